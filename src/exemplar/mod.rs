@@ -1,0 +1,1 @@
+//! Exemplars: voxels plus their small weave pattern.

@@ -1,0 +1,91 @@
+//! What the tracer traces: anything that can be looked up and bounded.
+
+use glam::Vec3;
+
+/// A ray in cloth space (mm); the direction is unit length and finite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it starts, mm.
+    pub origin: Vec3,
+    /// Unit direction.
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// The point at distance `t` mm.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
+
+/// An axis-aligned box in mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Lower corner.
+    pub min: Vec3,
+    /// Upper corner.
+    pub max: Vec3,
+}
+
+/// What a medium is at a point: SGGX fibres S = I − (1−α²)ttᵀ (Heitz 2015).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Voxel {
+    /// Extinction across the fibres, 1/mm; 0 = empty (then nothing else counts).
+    pub sigma: f32,
+    /// Unit fibre direction; t and −t mean the same.
+    pub direction: Vec3,
+    /// SGGX roughness α, 0.01..=1; 1 = isotropic.
+    pub alpha: f32,
+    /// Names the optics: [`Medium::albedo`] resolves it.
+    pub optics: u32,
+}
+
+impl Voxel {
+    /// Empty space.
+    pub const EMPTY: Self = Self {
+        sigma: 0.0,
+        direction: Vec3::Z,
+        alpha: 1.0,
+        optics: 0,
+    };
+}
+
+/// A stretch of a ray with an upper bound of the extinction on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Distance at which it begins, mm.
+    pub start: f32,
+    /// Distance at which it ends, mm.
+    pub end: f32,
+    /// No voxel that [`MajorantWalk::voxel`] returns on it has a larger `sigma`, 1/mm.
+    pub majorant: f32,
+}
+
+/// A participating medium: lookup and majorants along rays.
+pub trait Medium: Sync {
+    /// The state of one walk along one ray.
+    type Walk<'m>: MajorantWalk
+    where
+        Self: 'm;
+
+    /// Everything outside is empty.
+    fn bounds(&self) -> Bounds;
+
+    /// Starts a walk over the part of the ray with 0 ≤ t ≤ `t_max` (mm, may be infinite).
+    /// `seed` picks the stochastic taps of this walk.
+    fn walk(&self, ray: &Ray, t_max: f32) -> Self::Walk<'_>;
+
+    /// Single-scattering albedo (linear RGB) of an optics id that a voxel carried.
+    fn albedo(&self, optics: u32) -> Vec3;
+}
+
+/// A walk along a ray, stretch by stretch, in order of distance. Empty stretches may be
+/// skipped; the walk always ends.
+pub trait MajorantWalk {
+    /// The next stretch that may hold matter.
+    fn next_stretch(&mut self) -> Option<Stretch>;
+
+    /// The medium at distance `t`, which lies on the current stretch. `tap` holds uniform
+    /// numbers in [0,1) for a stochastic one-tap filter; a medium without one ignores them.
+    fn voxel(&self, t: f32, tap: Vec3) -> Voxel;
+}

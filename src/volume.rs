@@ -1,0 +1,1 @@
+//! Dense and sparse voxel grids, windows, bounds.

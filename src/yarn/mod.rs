@@ -1,0 +1,1 @@
+//! Centre curves of yarns from a weave, cross-sections, plies and fibres.

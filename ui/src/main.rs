@@ -1,0 +1,2 @@
+//! The program `pickglass`.
+fn main() {}
