@@ -13,6 +13,9 @@ use super::geometry::{Direction, WeaveGeometry, twist_angle};
 use super::noise::{crossing_window, hash, signed, unit};
 use super::recipe::YarnRecipe;
 
+/// Every yarn of a recipe shares one layout, so that its fibres meet at block borders.
+const LAYOUT_SEED: u64 = 0x70_6963_6b67;
+
 /// Places of a fibre in its ply's section, unit disc.
 #[derive(Debug, Clone)]
 pub struct FibreLayout {
@@ -29,16 +32,26 @@ impl FibreLayout {
         // A hexagonal lattice of spacing a holds π/(a²·√3/2) points in the unit disc.
         let spacing = (TAU / 2.0 / (per_ply * 3f32.sqrt() / 2.0)).sqrt();
         let reach = (1.0 / spacing).ceil() as i32 + 1;
-        let mut places = Vec::new();
-        for row in -reach..=reach {
-            for column in -2 * reach..=2 * reach {
+        // One sixth of it is laid with some disorder, and turned six times.
+        let mut places = vec![Vec2::ZERO];
+        for row in 0..=reach {
+            for column in 1..=2 * reach {
+                let number = (row * 4 * reach + column) as u64;
+                let disorder = 0.3
+                    * spacing
+                    * Vec2::new(
+                        signed(LAYOUT_SEED, 2 * number),
+                        signed(LAYOUT_SEED, 2 * number + 1),
+                    );
                 let place = spacing
                     * Vec2::new(
                         column as f32 + 0.5 * row as f32,
                         row as f32 * 3f32.sqrt() / 2.0,
                     );
                 if place.length() <= 0.97 {
-                    places.push(place);
+                    places.extend((0..6).map(|turn| {
+                        Vec2::from_angle(TAU * turn as f32 / 6.0).rotate(place + disorder)
+                    }));
                 }
             }
         }

@@ -18,6 +18,9 @@ const STATIONS: usize = 32;
 /// Share of a yarn's thickness that contact may not take away.
 const INCOMPRESSIBLE: f32 = 0.45;
 
+/// Share of its room that a yarn loses where it dives from face to face.
+const SQUEEZE: f32 = 0.22;
+
 /// The two directions of yarns in a weave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
@@ -134,7 +137,7 @@ impl Side<'_> {
     fn half_sizes(&self, aspect: f32, widest: f32) -> (f32, f32) {
         let width = (self.radius * aspect.sqrt()).min(widest);
         // A yarn squeezed sideways grows taller and denser, but not without end.
-        let height = (self.radius * self.radius / width).min(self.radius * 1.3);
+        let height = (self.radius * self.radius / width).min(self.radius * 1.15);
         (width, height)
     }
 }
@@ -301,8 +304,7 @@ fn level(station: usize, along: usize, on_top: &dyn Fn(i64) -> bool) -> f32 {
     if a == b {
         return a;
     }
-    let t = ((fraction - 0.5) * 1.15 + 0.5).clamp(0.0, 1.0);
-    a + (b - a) * t * t * (3.0 - 2.0 * t)
+    a + (b - a) * fraction * fraction * (3.0 - 2.0 * fraction)
 }
 
 /// How far into a float a station is: 0 at its ends, towards 1 in the middle of a long one.
@@ -319,7 +321,23 @@ fn float_share(station: usize, along: usize, on_top: &dyn Fn(i64) -> bool) -> f3
         .count() as i64;
     let length = (before + after + 1).min(limit) as f32;
     let place = (before as f32 + (station % STATIONS) as f32 / STATIONS as f32) / length;
-    (PI * place.clamp(0.0, 1.0)).sin() * (1.0 - 1.0 / length)
+    (PI * place.clamp(0.0, 1.0)).sin().powf(1.5) * (1.0 - 1.0 / length)
+}
+
+/// How near a dive is: 1 where the yarn changes faces, 0 from 0.8 of a crossing away.
+fn dive_share(station: usize, along: usize, on_top: &dyn Fn(i64) -> bool) -> f32 {
+    let crossing = (station / STATIONS) as i64;
+    let within = (station % STATIONS) as f32 / STATIONS as f32;
+    let wrapped = |k: i64| on_top(k.rem_euclid(along as i64));
+    let reach = |distance: f32, a: i64, b: i64| {
+        let dives = wrapped(a) != wrapped(b);
+        if dives {
+            (0.5 * PI * (distance / 0.8).min(1.0)).cos().powi(2)
+        } else {
+            0.0
+        }
+    };
+    reach(within, crossing - 1, crossing).max(reach(1.0 - within, crossing, crossing + 1))
 }
 
 fn lay_yarn(
@@ -346,9 +364,13 @@ fn lay_yarn(
             let float = float_share(station, along, on_top);
             let aspect =
                 recipe.crossing_aspect + (recipe.float_aspect - recipe.crossing_aspect) * float;
-            // Beside a yarn on the other face there is room to spread over or under it.
+            // Between faces a yarn is squeezed by those that it dives between. A long float
+            // spreads over the ties beside it.
+            let squeeze = 1.0 - SQUEEZE * dive_share(station, along, on_top);
+            let spread = 0.4 * (float - 0.5).max(0.0);
             let room = |other: f32| {
-                side.pitch * (0.5 + 0.24 * (0.5 * (own[station] - other).abs()).powi(2))
+                let apart = 0.5 * (own[station] - other).abs();
+                side.pitch * (0.49 + spread * apart * apart) * squeeze
             };
             let thickness = 1.0 + recipe.unevenness * 1.6 * noise(0);
             let (lower, low_height) = side.half_sizes(aspect, room(before[station]));
@@ -360,7 +382,7 @@ fn lay_yarn(
                 lower: lower * (1.0 + 0.3 * (thickness - 1.0)),
                 upper: upper * (1.0 + 0.3 * (thickness - 1.0)),
                 half_height: 0.5 * (low_height + high_height) * thickness,
-                phase: 0.16 * noise(3),
+                phase: recipe.twist_unevenness * noise(3),
             }
         })
         .collect();

@@ -42,6 +42,8 @@ pub struct YarnRecipe {
     pub looseness: f32,
     /// Relative irregularity of thickness.
     pub unevenness: f32,
+    /// How far the twist runs ahead or behind inside a crossing, turns.
+    pub twist_unevenness: f32,
     /// Width over height where yarns cross.
     pub crossing_aspect: f32,
     /// Width over height in the middle of a float.
@@ -72,6 +74,7 @@ impl YarnRecipe {
                 migration: 0.10,
                 looseness: 0.35,
                 unevenness: 0.07,
+                twist_unevenness: 0.035,
                 crossing_aspect: 1.45,
                 float_aspect: 1.3,
                 float_bulge: 0.22,
@@ -87,9 +90,10 @@ impl YarnRecipe {
                 singles_twist: 120.0,
                 ply_twist: 0.0,
                 packing: 0.7,
-                migration: 0.035,
+                migration: 0.09,
                 looseness: 0.0,
                 unevenness: 0.03,
+                twist_unevenness: 0.006,
                 crossing_aspect: 1.9,
                 float_aspect: 1.7,
                 float_bulge: 0.3,
@@ -108,6 +112,7 @@ impl YarnRecipe {
                 migration: 0.17,
                 looseness: 0.6,
                 unevenness: 0.08,
+                twist_unevenness: 0.04,
                 crossing_aspect: 1.4,
                 float_aspect: 1.25,
                 float_bulge: 0.25,
@@ -126,6 +131,7 @@ impl YarnRecipe {
                 migration: 0.10,
                 looseness: 0.2,
                 unevenness: 0.14,
+                twist_unevenness: 0.03,
                 crossing_aspect: 1.5,
                 float_aspect: 1.35,
                 float_bulge: 0.15,
