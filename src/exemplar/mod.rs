@@ -10,7 +10,11 @@
 
 mod bricks;
 mod direction;
+mod heights;
+mod set;
 pub mod voxelise;
 
 pub use bricks::{BRICK, BrickVolume, PackedVoxel};
 pub use direction::{decode_direction, encode_direction};
+pub use set::{ExemplarError, ExemplarSet, Pair, common_grid, quantise};
+pub use voxelise::VoxelGrid;

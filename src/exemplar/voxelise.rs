@@ -14,14 +14,14 @@ use crate::yarn::{Direction, WeaveGeometry, YarnRecipe};
 
 /// The grid of one exemplar.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grid {
+pub struct VoxelGrid {
     /// Voxels of one block (crossing) along x and y, and of the whole thickness.
     pub block: [usize; 3],
     /// Size of a voxel, mm.
     pub voxel_mm: Vec3,
 }
 
-impl Grid {
+impl VoxelGrid {
     /// Height of the lowest voxel's lower face over the cloth's mid plane, mm.
     pub fn floor_mm(&self) -> f32 {
         -0.5 * self.block[2] as f32 * self.voxel_mm.z
@@ -59,7 +59,7 @@ pub fn voxelise(
     weave: &WeaveGeometry,
     warp: &YarnRecipe,
     weft: &YarnRecipe,
-    grid: &Grid,
+    grid: &VoxelGrid,
     seed: u64,
     job: &Job,
 ) -> Result<BrickVolume, Cancelled> {
@@ -89,7 +89,7 @@ fn strands(
     weave: &WeaveGeometry,
     recipe: &YarnRecipe,
     direction: Direction,
-    grid: &Grid,
+    grid: &VoxelGrid,
     planes: usize,
     seed: u64,
 ) -> Strands {
@@ -335,7 +335,7 @@ mod tests {
             ..YarnRecipe::family(Family::Linen, 0.24)
         };
         let weave = WeaveGeometry::new(&pattern, &recipe, &recipe, Vec2::splat(0.48), 1);
-        let grid = Grid {
+        let grid = VoxelGrid {
             block: [80, 80, 120],
             voxel_mm: Vec3::splat(0.006),
         };
