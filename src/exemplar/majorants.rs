@@ -25,7 +25,10 @@ pub struct Allowance {
 
 impl Allowance {
     /// Both.
-    pub const FULL: Self = Self { shift: true, tap: true };
+    pub const FULL: Self = Self {
+        shift: true,
+        tap: true,
+    };
 }
 
 /// Majorants of all blocks of all sets.
@@ -62,7 +65,10 @@ impl BlockMajorants {
                 return [0.0, 0.0];
             }
             Face::ALL.iter().fold([0.0f32, 0.0f32], |range, &face| {
-                match edge_fix.bounds(set as u16, id as u16, face, bits).get(column) {
+                match edge_fix
+                    .bounds(set as u16, id as u16, face, bits)
+                    .get(column)
+                {
                     Some(b) => [range[0].min(b[0]), range[1].max(b[1])],
                     None => range,
                 }
@@ -84,7 +90,10 @@ impl BlockMajorants {
                 let (set, id) = (i / blocks, i % blocks);
                 let place = catalogue.place(id as u16);
                 let volume = &sets[set].volumes[usize::from(place.exemplar)];
-                let corner = [usize::from(place.x) * block[0], usize::from(place.y) * block[1]];
+                let corner = [
+                    usize::from(place.x) * block[0],
+                    usize::from(place.y) * block[1],
+                ];
                 (0..columns * rows)
                     .map(|column| {
                         let at = [
@@ -101,33 +110,45 @@ impl BlockMajorants {
         // lies on top there and the place along the border.
         let across = Across::new(catalogue, &columns_of, columns, rows, cells[2]);
         let mut fill = vec![0u8; sets.len() * blocks * columns * rows * cells[2]];
-        fill.par_chunks_mut(columns * rows * cells[2]).enumerate().for_each(|(i, fill)| {
-            let own = &columns_of[i];
-            for (column, fill) in fill.chunks_mut(cells[2]).enumerate() {
-                let (x, y) = ((column % columns) as i64, (column / columns) as i64);
-                raise(fill, &own[column].all);
-                if !allowance.tap {
-                    continue;
-                }
-                for dy in -1..=1 {
-                    for dx in -1..=1 {
-                        let (nx, ny) = (x + dx, y + dy);
-                        if (dx, dy) == (0, 0) {
-                            continue;
-                        }
-                        // The rim that faces this column; a corner lies on two rims.
-                        let rim = if dx != 0 { usize::from(dx < 0) } else { 2 + usize::from(dy < 0) };
-                        let inside = (0..columns as i64).contains(&nx) && (0..rows as i64).contains(&ny);
-                        if inside {
-                            raise(fill, &own[ny as usize * columns + nx as usize].rims[rim]);
-                        } else {
-                            raise(fill, across.rim(rim, nx, ny, columns, rows));
+        fill.par_chunks_mut(columns * rows * cells[2])
+            .enumerate()
+            .for_each(|(i, fill)| {
+                let own = &columns_of[i];
+                for (column, fill) in fill.chunks_mut(cells[2]).enumerate() {
+                    let (x, y) = ((column % columns) as i64, (column / columns) as i64);
+                    raise(fill, &own[column].all);
+                    if !allowance.tap {
+                        continue;
+                    }
+                    for dy in -1..=1 {
+                        for dx in -1..=1 {
+                            let (nx, ny) = (x + dx, y + dy);
+                            if (dx, dy) == (0, 0) {
+                                continue;
+                            }
+                            // The rim that faces this column; a corner lies on two rims.
+                            let rim = if dx != 0 {
+                                usize::from(dx < 0)
+                            } else {
+                                2 + usize::from(dy < 0)
+                            };
+                            let inside =
+                                (0..columns as i64).contains(&nx) && (0..rows as i64).contains(&ny);
+                            if inside {
+                                raise(fill, &own[ny as usize * columns + nx as usize].rims[rim]);
+                            } else {
+                                raise(fill, across.rim(rim, nx, ny, columns, rows));
+                            }
                         }
                     }
                 }
-            }
-        });
-        Self { cells, pad, blocks, fill }
+            });
+        Self {
+            cells,
+            pad,
+            blocks,
+            fill,
+        }
     }
 
     /// Cells along x, y and z of a block.
@@ -168,7 +189,10 @@ fn raise(into: &mut [u8], from: &[u8]) {
 
 fn read_column(volume: &BrickVolume, at: [usize; 2]) -> Column {
     let depth = volume.size()[2];
-    let mut column = Column { all: vec![0; depth], rims: std::array::from_fn(|_| vec![0; depth]) };
+    let mut column = Column {
+        all: vec![0; depth],
+        rims: std::array::from_fn(|_| vec![0; depth]),
+    };
     for z in 0..depth {
         for y in 0..CELL {
             for x in 0..CELL {
@@ -201,11 +225,18 @@ impl Column {
                     let high = ((cell + 1) * CELL as i64 - pad as i64) as f32 - bounds[0];
                     let low = (low.floor() as i64 - tap as i64).clamp(0, depth);
                     let high = (high.ceil() as i64 + tap as i64).clamp(0, depth);
-                    fill[low as usize..high.max(low) as usize].iter().copied().max().unwrap_or(0)
+                    fill[low as usize..high.max(low) as usize]
+                        .iter()
+                        .copied()
+                        .max()
+                        .unwrap_or(0)
                 })
                 .collect()
         };
-        Self { all: spread(&self.all), rims: std::array::from_fn(|i| spread(&self.rims[i])) }
+        Self {
+            all: spread(&self.all),
+            rims: std::array::from_fn(|i| spread(&self.rims[i])),
+        }
     }
 }
 

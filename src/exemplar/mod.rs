@@ -11,10 +11,12 @@
 mod bricks;
 mod direction;
 mod heights;
+mod majorants;
 mod set;
 pub mod voxelise;
 
 pub use bricks::{BRICK, BrickVolume, PackedVoxel};
 pub use direction::{decode_direction, encode_direction};
+pub use majorants::{Allowance, BlockMajorants, CELL};
 pub use set::{ExemplarError, ExemplarSet, Pair, common_grid, quantise};
 pub use voxelise::VoxelGrid;

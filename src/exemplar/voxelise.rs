@@ -13,7 +13,7 @@ use crate::yarn::fibre::{self, FibreLayout};
 use crate::yarn::{Direction, WeaveGeometry, YarnRecipe};
 
 /// The grid of one exemplar.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VoxelGrid {
     /// Voxels of one block (crossing) along x and y, and of the whole thickness.
     pub block: [usize; 3],
