@@ -9,6 +9,7 @@
 //! [`ClothVolume`] is a [`Medium`](crate::render::Medium) like any dense grid.
 
 mod build;
+pub mod colour;
 mod lookup;
 mod walk;
 
