@@ -5,6 +5,7 @@
 //! nothing is ever half-written.
 
 pub mod atomic;
+pub mod presets;
 pub mod ron;
 pub mod wif;
 
