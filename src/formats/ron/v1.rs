@@ -133,7 +133,7 @@ enum RepeatV1 {
     #[default]
     Straight,
     Dropped(u32),
-    None,
+    Once,
 }
 
 #[derive(Serialize, Deserialize, Default)]
@@ -229,7 +229,7 @@ fn repeat(found: RepeatV1) -> Repeat {
     match found {
         RepeatV1::Straight => Repeat::Straight,
         RepeatV1::Dropped(by) => Repeat::Dropped(by),
-        RepeatV1::None => Repeat::None,
+        RepeatV1::Once => Repeat::None,
     }
 }
 
@@ -473,7 +473,7 @@ fn of_repeat(repeat: Repeat) -> RepeatV1 {
     match repeat {
         Repeat::Straight => RepeatV1::Straight,
         Repeat::Dropped(by) => RepeatV1::Dropped(by),
-        Repeat::None => RepeatV1::None,
+        Repeat::None => RepeatV1::Once,
     }
 }
 
