@@ -1,6 +1,6 @@
 //! PNG stills: sRGB with alpha, 8 or 16 bits, true scale and text in the metadata.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::atomic;
 
@@ -52,13 +52,8 @@ pub enum PngError {
     #[error("png: {0}; check the size and the text keywords")]
     Encode(#[from] png::EncodingError),
     /// The file could not be written.
-    #[error("{path}: {source}; check the folder and the space left", path = path.display())]
-    Write {
-        /// Where.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] atomic::WriteError),
 }
 
 /// Encodes a picture into the bytes of a PNG file.
@@ -110,10 +105,7 @@ pub fn write(
     metadata: &Metadata,
 ) -> Result<(), PngError> {
     let bytes = encode(picture, depth, metadata)?;
-    atomic::write(path, &bytes).map_err(|source| PngError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    Ok(atomic::write(path, &bytes)?)
 }
 
 /// The samples in file order, big-endian. NaN becomes 0.
