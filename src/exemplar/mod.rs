@@ -13,10 +13,12 @@ mod direction;
 mod heights;
 mod majorants;
 mod set;
+mod store;
 pub mod voxelise;
 
 pub use bricks::{BRICK, BrickVolume, PackedVoxel};
 pub use direction::{decode_direction, encode_direction};
 pub use majorants::{Allowance, BlockMajorants, CELL};
 pub use set::{ExemplarError, ExemplarSet, Pair, common_grid, quantise};
+pub use store::ExemplarStore;
 pub use voxelise::VoxelGrid;
