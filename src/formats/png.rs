@@ -76,7 +76,7 @@ pub fn encode(picture: &Picture, depth: Depth, metadata: &Metadata) -> Result<Ve
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     if let Some(per_mm) = metadata.pixels_per_mm {
         let per_metre = (per_mm * 1000.0).round();
-        if per_metre >= 1.0 && per_metre < 2e9 {
+        if (1.0..2e9).contains(&per_metre) {
             encoder.set_pixel_dims(Some(png::PixelDimensions {
                 xppu: per_metre as u32,
                 yppu: per_metre as u32,
