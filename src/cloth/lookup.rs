@@ -86,8 +86,10 @@ impl ClothVolume {
             return Voxel::EMPTY;
         }
         let place = self.catalogue.place(crossing.block.block);
-        let volume =
-            &self.sets[usize::from(crossing.block.set)].volumes[usize::from(place.exemplar)];
+        let set = &self.sets[usize::from(crossing.block.set)];
+        let Some(volume) = &set.volumes[usize::from(place.exemplar)] else {
+            return Voxel::EMPTY;
+        };
         let voxel = volume.get(
             usize::from(place.x) * bx + x,
             usize::from(place.y) * by + y,

@@ -89,7 +89,10 @@ impl BlockMajorants {
             .map(|i| {
                 let (set, id) = (i / blocks, i % blocks);
                 let place = catalogue.place(id as u16);
-                let volume = &sets[set].volumes[usize::from(place.exemplar)];
+                // What is not built is never shown.
+                let Some(volume) = &sets[set].volumes[usize::from(place.exemplar)] else {
+                    return Vec::new();
+                };
                 let corner = [
                     usize::from(place.x) * block[0],
                     usize::from(place.y) * block[1],
@@ -267,7 +270,7 @@ impl Across {
             (0..places[rim])
                 .map(|place| {
                     let mut most = vec![0u8; cells];
-                    for block in columns_of {
+                    for block in columns_of.iter().filter(|block| !block.is_empty()) {
                         raise(&mut most, &block[column_of(rim, place)].rims[rim]);
                     }
                     most

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothSettings, ClothVolume, YarnClasses, colour};
+use crate::cloth::{ClothError, ClothSettings, ClothVolume, YarnClasses, colour};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
@@ -101,21 +101,22 @@ pub fn prepare(
     let (settings, _, effects) = settings(request)?;
     let begun = Instant::now();
     let catalogue = Arc::new(Catalogue::standard());
+    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, job)?;
+    let assigning = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
     let classes = YarnClasses::new(design);
-    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings)
-        .map_err(crate::cloth::ClothError::from)?;
-    let mut sets = Vec::with_capacity(classes.pairs.len());
-    for pair in &classes.pairs {
-        let set = store
-            .get(&catalogue, pair, grid, job)
-            .map_err(crate::cloth::ClothError::from)?;
-        sets.push(set);
-    }
+    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).map_err(ClothError::from)?;
+    let sets = (classes.pairs.iter())
+        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(ClothError::from)?;
     let exemplars = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let albedo: Vec<Vec3> = design.yarns().iter().map(colour::albedo).collect();
-    let cloth = ClothVolume::new(design, catalogue, classes, sets, albedo, settings, job)?;
-    let synthesis = begun.elapsed().as_secs_f64();
+    let cloth = ClothVolume::new(
+        design, catalogue, classes, assignment, sets, albedo, settings, job,
+    )?;
+    let synthesis = assigning + begun.elapsed().as_secs_f64();
     Ok(PreparedCloth {
         design: Arc::clone(design),
         cloth,
