@@ -157,8 +157,9 @@ impl Columns {
 /// A continuous pair along the warp, in the score; everything else stays below.
 const ALONG: u64 = 1 << 32;
 /// A block beside that would fit, in the score.
-const BESIDE: u64 = 16;
-/// Preferences lie below this.
+const BESIDE: u64 = 64;
+/// Preferences lie below this: a column of four rows of them does not outweigh a block
+/// beside (measured: heavier preferences cost continuity across the warp).
 const PREFERENCES: u64 = 16;
 
 /// A column of the cloth: keys of its own crossings and of those beside it, row by row.
@@ -185,6 +186,9 @@ pub(super) struct Scratch {
     laid: Vec<Laid>,
     /// Preferences `[entry.preferences + row mod height]`.
     preferences: Vec<u8>,
+    /// Distinct heights of exemplars and the row modulo each.
+    heights: Vec<u32>,
+    phases: Vec<u32>,
     scores: Vec<u64>,
     scores_below: Vec<u64>,
     /// Best entry of each row.
@@ -202,6 +206,7 @@ pub(super) struct Scratch {
 /// An entry in step with a column of the cloth.
 #[derive(Clone, Copy)]
 struct Laid {
+    /// Which of `Scratch::heights` the exemplar has.
     height: u32,
     preferences: u32,
     beside: [u32; 2],
@@ -255,6 +260,7 @@ impl Solver<'_> {
     fn lay(&self, catalogue: &Catalogue, seed: u64, scratch: &mut Scratch) {
         scratch.laid.clear();
         scratch.preferences.clear();
+        scratch.heights.clear();
         let end = self.end(0);
         for entry in &self.columns.entries {
             let block = self.columns.align(entry, end);
@@ -262,8 +268,13 @@ impl Solver<'_> {
             let width = u32::from(entry.width);
             let height = u32::from(entry.height);
             let across = (u32::from(place.x) + width - end % width) % width;
+            let known = scratch.heights.iter().position(|&other| other == height);
+            let slot = known.unwrap_or(scratch.heights.len());
+            if known.is_none() {
+                scratch.heights.push(height);
+            }
             scratch.laid.push(Laid {
-                height,
+                height: slot as u32,
                 preferences: scratch.preferences.len() as u32,
                 beside: self.columns.beside[usize::from(block)],
             });
@@ -276,13 +287,23 @@ impl Solver<'_> {
         }
     }
 
-    /// What an entry is worth at a row, apart from continuity along the warp.
+    /// Gets ready for [`Solver::worth`] at a row.
+    fn enter_row(row: usize, scratch: &mut Scratch) {
+        let Scratch {
+            heights, phases, ..
+        } = scratch;
+        phases.clear();
+        phases.extend(heights.iter().map(|&height| row as u32 % height));
+    }
+
+    /// What an entry is worth at the row entered last, apart from continuity along the
+    /// warp.
     #[inline]
     fn worth(&self, entry: u16, row: usize, scratch: &Scratch) -> u64 {
         let laid = &scratch.laid[usize::from(entry)];
         let left = laid.beside[0] >> self.column.left[row] & 1;
         let right = laid.beside[1] >> self.column.right[row] & 1;
-        let phase = row as u32 % laid.height;
+        let phase = scratch.phases[laid.height as usize];
         let liking = scratch.preferences[(laid.preferences + phase) as usize];
         BESIDE * u64::from(left + right) + u64::from(liking)
     }
@@ -299,23 +320,30 @@ impl Solver<'_> {
     }
 
     /// The entry at row 0 of the best cycle of blocks that closes on itself.
-    fn closed_cycle(&self, scratch: &Scratch) -> Option<u16> {
+    fn closed_cycle(&self, scratch: &mut Scratch) -> Option<u16> {
         let first = *self.column.keys.first()?;
-        let sum_round = |&start: &u16| {
-            let mut sum = self.worth(start, 0, scratch);
-            let mut entry = start;
-            for (row, &key) in self.column.keys.iter().enumerate().skip(1) {
-                entry = self.columns.follow(entry, key)?;
-                sum += self.worth(entry, row, scratch);
+        let mut best = None;
+        for &start in &self.columns.by_key[usize::from(first)] {
+            if let Some(sum) = self.worth_of_cycle(start, scratch) {
+                best = best.max(Some((sum, start)));
             }
-            let closed = self.columns.entries[usize::from(entry)].above == start;
-            closed.then_some((std::cmp::Reverse(sum), start))
-        };
-        let candidates = self.columns.by_key[usize::from(first)].iter();
-        candidates
-            .filter_map(sum_round)
-            .min()
-            .map(|(_, start)| start)
+        }
+        best.map(|(_, start)| start)
+    }
+
+    /// What the cycle of blocks from an entry at row 0 is worth; `None` unless it closes.
+    fn worth_of_cycle(&self, start: u16, scratch: &mut Scratch) -> Option<u64> {
+        let mut entry = start;
+        let mut sum = 0;
+        for (row, &key) in self.column.keys.iter().enumerate() {
+            if row > 0 {
+                entry = self.columns.follow(entry, key)?;
+            }
+            Self::enter_row(row, scratch);
+            sum += self.worth(entry, row, scratch);
+        }
+        let closed = self.columns.entries[usize::from(entry)].above == start;
+        closed.then_some(sum)
     }
 
     /// The recursion, from `start` upwards (round the column).
@@ -330,6 +358,7 @@ impl Solver<'_> {
         let mut below = None;
         let mut best_below = 0;
         for row in (start..keys.len()).chain(0..start) {
+            Self::enter_row(row, scratch);
             scratch.rows.push(scratch.continued.len());
             let (mut best, mut best_entry) = (0, NO_BLOCK);
             for &entry in &self.columns.by_key[usize::from(keys[row])] {
