@@ -1,5 +1,7 @@
 //! Catalogue, assignment, editing, randomisation: Zhao 2012 §5.3–5.4.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use pickglass::design::{Lattice, Repeat, WeavePattern};
 use pickglass::job::Job;
 use pickglass::synthesis::{

@@ -82,6 +82,7 @@ impl EdgeSolver {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::EdgeSolver;
 
