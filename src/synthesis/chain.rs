@@ -258,8 +258,17 @@ struct Solver<'a> {
 impl Solver<'_> {
     /// The design's column of a row.
     fn end(&self, row: usize) -> u32 {
-        let ends = self.column.ends;
-        ends.get(row / self.column.picks).copied().unwrap_or(0)
+        match self.column.ends {
+            [end] => *end,
+            ends => ends.get(row / self.column.picks).copied().unwrap_or(0),
+        }
+    }
+
+    /// A row counted round the column, at most one turn too far.
+    #[inline]
+    fn round(&self, row: usize) -> usize {
+        let rows = self.column.keys.len();
+        if row >= rows { row - rows } else { row }
     }
 
     /// Puts all candidates in step with the column's first row, with their preferences.
@@ -307,6 +316,14 @@ impl Solver<'_> {
     fn enter_row(row: usize, heights: &[u32], phases: &mut Vec<u32>) {
         phases.clear();
         phases.extend(heights.iter().map(|&height| row as u32 % height));
+    }
+
+    /// The same for the row after the one entered last, without division.
+    #[inline]
+    fn enter_next_row(heights: &[u32], phases: &mut [u32]) {
+        for (phase, &height) in phases.iter_mut().zip(heights) {
+            *phase = if *phase + 1 == height { 0 } else { *phase + 1 };
+        }
     }
 
     /// What a candidate is worth at a row, apart from continuity along the warp.
@@ -386,7 +403,11 @@ impl Solver<'_> {
         let mut below_bit = 0u32;
         let mut best_below = 0;
         for row in (start..keys.len()).chain(0..start) {
-            Self::enter_row(row, heights, phases);
+            if row == start || row == 0 {
+                Self::enter_row(row, heights, phases);
+            } else {
+                Self::enter_next_row(heights, phases);
+            }
             rows.push(continued.len());
             let key = usize::from(keys[row]);
             let (mut highest, mut highest_entry) = (0, NO_BLOCK);
@@ -411,17 +432,16 @@ impl Solver<'_> {
 
     /// Follows the recursion back from its best end, run by run.
     fn write_back(&self, start: usize, scratch: &Scratch, blocks: &mut [u16]) {
-        let keys = self.column.keys;
-        let mut top = keys.len();
+        let mut top = self.column.keys.len();
         while top > 0 {
             // Down from the best entry of the topmost free row to where its run begins.
             let mut step = top - 1;
             let mut entry = scratch.best[step];
-            while self.continues(entry, step, (start + step) % keys.len(), scratch) {
+            while self.continues(entry, step, self.round(start + step), scratch) {
                 entry = self.columns.entries[usize::from(entry)].below;
                 step -= 1;
             }
-            self.write_run(entry, (start + step) % keys.len(), top - step, blocks);
+            self.write_run(entry, self.round(start + step), top - step, blocks);
             top = step;
         }
     }
@@ -440,7 +460,7 @@ impl Solver<'_> {
             let Some(here) = self.columns.entries.get(usize::from(entry)) else {
                 return;
             };
-            blocks[(row + step) % self.column.keys.len()] = self.columns.align(here, end);
+            blocks[self.round(row + step)] = self.columns.align(here, end);
             entry = here.above;
         }
     }
