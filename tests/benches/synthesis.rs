@@ -39,6 +39,17 @@ fn damask(ends: u32, picks: u32) -> WeavePattern {
     })
 }
 
+/// Processor time of this process in seconds, all threads: what counts on a busy machine.
+fn processor_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit(')').next().unwrap_or("").split_whitespace();
+    let ticks = fields
+        .skip(11)
+        .take(2)
+        .filter_map(|ticks| ticks.parse::<f64>().ok());
+    ticks.sum::<f64>() / 100.0
+}
+
 /// The best of a few runs, in seconds, with the last result.
 fn best_of<T>(runs: u32, mut work: impl FnMut() -> T) -> (f64, T) {
     let mut best = f64::INFINITY;
@@ -87,6 +98,14 @@ fn stages(name: &str, pattern: &WeavePattern, lattice: Lattice, runs: u32) -> As
     let before = peak_mb();
     println!("{name}: {} x {}", pattern.ends(), pattern.picks());
     let mut last = None;
+    let cpu = processor_seconds();
+    for _ in 0..runs {
+        black_box(assign(pattern, lattice, &catalogue, Method::Dp, 1, &job).expect("assigned"));
+    }
+    println!(
+        "  dp: {:.3} processor seconds a run",
+        (processor_seconds() - cpu) / f64::from(runs)
+    );
     for method in [Method::Naive, Method::Greedy, Method::Dp] {
         let (seconds, assignment) = best_of(runs, || {
             assign(pattern, lattice, &catalogue, method, 1, &job).expect("assigned")
