@@ -40,7 +40,7 @@ fn design(
 ) -> Design {
     let sett = Sett::per_cm(sett.0, sett.1);
     let mut design = Design::new(name, structure, yarns, maps, sett).unwrap();
-    design.notes = vec![note.to_owned()];
+    design.notes = note.to_owned();
     design
 }
 

@@ -214,7 +214,7 @@ fn private_sections_come_back_word_for_word() {
         assert!(text.contains(line), "{line}");
     }
     assert_eq!(design.origin.sections.len(), 3);
-    assert_eq!(design.notes.len(), 3);
+    assert_eq!(design.notes.lines().count(), 3);
     let honeysuckle = read(&folder.join("warptracker/Overshot_Honeysuckle.wif")).unwrap();
     let text = wif::write(&honeysuckle.design).unwrap().text;
     assert!(text.contains("[TW PROJECT]\nShowGridOverlay=true\n"));
