@@ -55,6 +55,13 @@ impl Warnings {
         self.add(|| format!("line {line}: {}", what.as_ref()));
     }
 
+    /// One warning more that nobody would read: not worth its words.
+    fn flooded(&mut self) -> bool {
+        let full = self.list.len() >= MAX_WARNINGS;
+        self.more += usize::from(full);
+        full
+    }
+
     pub fn whole(&mut self, what: impl Into<String>) {
         self.add(|| what.into());
     }
@@ -220,6 +227,9 @@ fn check_shape(file: &File<'_>, warnings: &mut Warnings) {
     for section in &file.sections {
         if section.line > 0 && OWN.iter().any(|own| same(own, section.name)) {
             for entry in section.entries(true).filter(|entry| entry.value.is_none()) {
+                if warnings.flooded() {
+                    continue;
+                }
                 let what = format!("\"{}\" has no \"=\" and is ignored", shorten(entry.key));
                 warnings.at(entry.line, what);
             }
@@ -329,7 +339,8 @@ impl Rows {
                 let from = found.members.len() as u32;
                 found.read_members(file.name, name, entry.line, bare(value))?;
                 let to = found.members.len() as u32;
-                if found.rows.insert(thread, (entry.line, from, to)).is_some() {
+                let again = found.rows.insert(thread, (entry.line, from, to)).is_some();
+                if again && !warnings.flooded() {
                     let what = format!("thread {thread} in [{name}] stands there again");
                     warnings.at(entry.line, format!("{what}; the later line counts"));
                 }
