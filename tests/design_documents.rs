@@ -1,5 +1,7 @@
 //! Design documents: what is written is what is read, and nothing else is accepted.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use pickglass::design::{
     Corrections, Density, Design, Family, Fill, FirstEnd, ForeignSection, Grid, Lattice, Region,
     Regions, Repeat, Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps,

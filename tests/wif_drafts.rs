@@ -4,6 +4,8 @@
 //! beside the project; where they are absent these tests say so and pass, unless
 //! `GOLDEN_REQUIRED=1` demands them.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use std::path::{Path, PathBuf};
 
 use pickglass::design::{FloatLengths, longest_float};

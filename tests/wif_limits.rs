@@ -2,6 +2,8 @@
 //!
 //! One test in a process of its own, since peak memory is the process's.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,7 @@
 //! What real programs do to WIF, one small file each.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use std::path::Path;
 
 use pickglass::design::{Lifting, Structure, WeavePattern};

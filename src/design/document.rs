@@ -400,6 +400,7 @@ pub fn usual_sett(yarns: &[Yarn], maps: &YarnMaps) -> Sett {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::super::{Family, Filled, Grid, Repeat};
     use super::*;

@@ -459,6 +459,7 @@ fn set_bits(ends: &[u32], row: &mut [u64]) {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

@@ -136,8 +136,8 @@ impl Positions {
         let mut starts = vec![0.0];
         let mut sum = 0.0;
         for pitch in pitches_mm {
-            // `max` also takes NaN to the smallest pitch.
-            sum += f64::from(pitch.max(MIN_PITCH_MM).min(MAX_PITCH_MM));
+            let usable = if pitch.is_nan() { MIN_PITCH_MM } else { pitch };
+            sum += f64::from(usable.clamp(MIN_PITCH_MM, MAX_PITCH_MM));
             starts.push(sum);
         }
         if starts.len() == 1 {
@@ -222,6 +222,7 @@ impl Positions {
 const LAST_THROUGH: f64 = 1.0 - f64::EPSILON / 2.0;
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 
