@@ -5,6 +5,8 @@
 //! nothing is ever half-written.
 
 pub mod atomic;
+pub mod exr;
+pub mod png;
 pub mod presets;
 pub mod ron;
 pub mod wif;
