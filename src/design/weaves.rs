@@ -314,7 +314,7 @@ fn tie_distance(ends: u32, step: u32) -> u32 {
 /// that face and back change places and no long float arises.
 fn herringbone(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
     let repeat: u32 = ratio.iter().sum();
-    if width < 2 || width > MAX_REPEAT / 2 {
+    if !(2..=MAX_REPEAT / 2).contains(&width) {
         return Err(format!(
             "stripes of {width} ends: give 2 to {}",
             MAX_REPEAT / 2
@@ -332,7 +332,7 @@ fn herringbone(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePatte
 /// Twill that turns on every `width`-th end: the turning ends stand alone.
 fn pointed(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
     let repeat: u32 = ratio.iter().sum();
-    if width < 2 || width > MAX_REPEAT / 2 {
+    if !(2..=MAX_REPEAT / 2).contains(&width) {
         return Err(format!(
             "points every {width} ends: give 2 to {}",
             MAX_REPEAT / 2
@@ -371,6 +371,7 @@ fn wavy(ratio: &[u32], size: u32, leans_left: bool) -> Result<WeavePattern, Stri
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

@@ -175,6 +175,7 @@ pub fn write(design: &Design) -> Result<String, RonError> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 
