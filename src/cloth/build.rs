@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::window::Window;
 use crate::design::{Design, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps};
 use crate::exemplar::{
     Allowance, BlockMajorants, ExemplarError, ExemplarSet, Pair, VoxelGrid, common_grid, quantise,
@@ -161,6 +162,7 @@ pub struct ClothVolume {
     /// Single-scattering albedo by yarn.
     pub(super) albedo: Vec<Vec3>,
     pub(super) settings: ClothSettings,
+    pub(super) window: Arc<Window>,
 }
 
 impl ClothVolume {
@@ -268,6 +270,7 @@ impl ClothVolume {
                 .collect(),
             albedo,
             settings,
+            window: Arc::default(),
         })
     }
 
@@ -282,6 +285,7 @@ impl ClothVolume {
         job: &Job,
     ) -> Result<(), ClothError> {
         self.assignment.edit(weave, &self.catalogue, cells, job)?;
+        self.window = Arc::default();
         Ok(())
     }
 

@@ -117,6 +117,9 @@ impl BlockMajorants {
             .enumerate()
             .for_each(|(i, fill)| {
                 let own = &columns_of[i];
+                if own.is_empty() {
+                    return;
+                }
                 for (column, fill) in fill.chunks_mut(cells[2]).enumerate() {
                     let (x, y) = ((column % columns) as i64, (column / columns) as i64);
                     raise(fill, &own[column].all);

@@ -205,14 +205,9 @@ pub fn render(
             error: known(progress.error.error),
         });
     };
-    let outcome = render::render(
-        &prepared.cloth,
-        &camera,
-        &lights,
-        &settings,
-        &job,
-        &mut show,
-    )?;
+    let (x, y) = in_view(&camera, request.view);
+    let cloth = prepared.cloth.clone().with_window(x, y);
+    let outcome = render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?;
     let mut seconds = prepared.seconds.clone();
     seconds.push(("render".to_owned(), outcome.seconds));
     let report = StillReport {
@@ -245,6 +240,23 @@ pub fn render(
         pixels_per_mm: camera.pixels_per_mm(),
         texts,
     })
+}
+
+/// The stretch of cloth that a camera sees most of, mm in x and y.
+fn in_view(camera: &Camera, view: View) -> (std::ops::Range<f32>, std::ops::Range<f32>) {
+    // A slanting view reaches further.
+    let reach = match view {
+        View::Face | View::Back | View::Close => 0.6,
+        View::Oblique => 1.2,
+        View::Grazing => 2.5,
+    };
+    let target = camera.target();
+    let across = reach * camera.width() as f32 / camera.pixels_per_mm();
+    let along = reach * camera.height() as f32 / camera.pixels_per_mm();
+    (
+        target.x - across..target.x + across,
+        target.y - along..target.y + along,
+    )
 }
 
 /// Prepares and renders in one go, with the user's exemplar store.
