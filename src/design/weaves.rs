@@ -67,7 +67,13 @@ struct Words {
 /// [`NotationError`] with what is wrong and what would be right.
 pub fn weave(notation: &str) -> Result<WeavePattern, NotationError> {
     build(notation).map_err(|reason| NotationError {
-        notation: notation.trim().chars().take(60).collect(),
+        notation: notation
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+            .chars()
+            .take(60)
+            .collect(),
         reason,
     })
 }
