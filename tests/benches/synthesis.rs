@@ -164,6 +164,18 @@ fn seams(pattern: &WeavePattern, assignment: &Assignment) {
             fix.bytes() as f64 / 1e6,
             rms.seams
         );
+        let cpu = processor_seconds();
+        for _ in 0..3 {
+            let quality = Quality::measure(pattern, assignment, &catalogue, RANDOMISATION, &job);
+            black_box(quality.expect("measured"));
+        }
+        let quality = (processor_seconds() - cpu) / 3.0;
+        for _ in 0..3 {
+            let rms = placement.seam_rms(&fix, &heights, |_, _| 0, &job);
+            black_box(rms.expect("measured"));
+        }
+        let rms = (processor_seconds() - cpu) / 3.0 - quality;
+        println!("  processor seconds a run: quality {quality:.3}, seam_rms {rms:.3}");
         let count = 1_000_000u64;
         let lookups: Vec<(i64, i64, usize, usize)> = (0..count)
             .map(|n| {
