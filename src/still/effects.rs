@@ -14,7 +14,7 @@ pub struct Effect {
 }
 
 /// The effects, in the order of the report.
-pub const EFFECTS: [Effect; 6] = [
+pub const EFFECTS: [Effect; 7] = [
     Effect {
         name: "shadows",
         about: "light is blocked on its way to a fibre",
@@ -26,6 +26,10 @@ pub const EFFECTS: [Effect; 6] = [
     Effect {
         name: "sky",
         about: "light from all round, beside the suns",
+    },
+    Effect {
+        name: "hairs",
+        about: "flyaway fibres on both faces",
     },
     Effect {
         name: "edge-fixing",
@@ -187,7 +191,7 @@ pub(super) fn choose(
             .ok_or_else(|| DialError::Effect(name.clone()))?;
         on[index] = *switched;
     }
-    let [shadows, multiple, sky, edge_fixing, randomisation, tap] = on;
+    let [shadows, multiple, sky, _, edge_fixing, randomisation, tap] = on;
     render.shadows &= shadows;
     render.sky &= sky;
     if !multiple {

@@ -8,13 +8,14 @@ use glam::Vec3;
 
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothError, ClothSettings, ClothVolume, YarnClasses, colour};
-use crate::design::Design;
+use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
+use crate::design::{Design, Yarn};
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::render::{self, Camera, Film, LightRig, RenderSettings, Tone, View};
+use crate::render::{self, Both, Camera, Film, LightRig, RenderSettings, Tone, View};
 use crate::synthesis::Catalogue;
+use crate::yarn::YarnRecipe;
 
 /// Samples a pixel when a request gives no way to stop.
 const USUAL_SPP: u32 = 64;
@@ -42,6 +43,23 @@ pub struct PreparedCloth {
 }
 
 impl PreparedCloth {
+    /// Whether an effect is simulated.
+    fn on(&self, name: &str) -> bool {
+        self.effects
+            .iter()
+            .any(|(effect, on)| effect == name && *on)
+    }
+
+    /// Whether each yarn has hairs.
+    fn hairy(&self) -> Vec<bool> {
+        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
+        self.design
+            .yarns()
+            .iter()
+            .map(|yarn| hairs(yarn) >= 0.5)
+            .collect()
+    }
+
     /// The cloth.
     pub fn cloth(&self) -> &ClothVolume {
         &self.cloth
@@ -207,7 +225,17 @@ pub fn render(
     };
     let (x, y) = in_view(&camera, request.view);
     let cloth = prepared.cloth.clone().with_window(x, y);
-    let outcome = render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?;
+    let hairs = prepared
+        .on("hairs")
+        .then(|| HairLayer::new(&cloth, prepared.hairy()))
+        .flatten();
+    let outcome = match &hairs {
+        Some(hairs) => {
+            let both = Both(&cloth, hairs);
+            render::render(&both, &camera, &lights, &settings, &job, &mut show)?
+        }
+        None => render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?,
+    };
     let mut seconds = prepared.seconds.clone();
     seconds.push(("render".to_owned(), outcome.seconds));
     let report = StillReport {
