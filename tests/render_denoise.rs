@@ -36,14 +36,14 @@ fn error(picture: &[Vec3], reference: &[Vec3]) -> f64 {
 
 /// Strength of detail: RMS difference of horizontal neighbours.
 fn detail(picture: &[Vec3], width: usize) -> f64 {
-    let (mut sum, mut n) = (0.0, 0.0);
+    let (mut sum, mut n) = (0.0f64, 0.0f64);
     for row in picture.chunks_exact(width) {
         for pair in row.windows(2) {
             sum += f64::from(luminance(pair[0] - pair[1])).powi(2);
             n += 1.0;
         }
     }
-    (sum / n as f64).sqrt()
+    (sum / n).sqrt()
 }
 
 /// What a filter without guidance does: a box of 7×7.
