@@ -1,0 +1,95 @@
+//! The status line: what is shown, how good it is, and what is under way.
+
+use egui::{ProgressBar, RichText};
+
+use super::cloth_pane::Shown;
+use super::worker::Phase;
+use crate::opened::Opened;
+use crate::tokens::{self, Palette};
+
+/// What the status line tells of.
+pub struct Status<'s> {
+    pub opened: Option<&'s Opened>,
+    pub shown: Option<&'s Shown>,
+    pub phase: &'s Phase,
+    pub paused: bool,
+    pub export: Option<String>,
+    /// The crossing under the pointer.
+    pub crossing: Option<(i64, i64)>,
+}
+
+/// What the person wants ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cancel {
+    Preview,
+    Export,
+}
+
+/// Shows the line; returns what was cancelled.
+pub fn show(ui: &mut egui::Ui, status: &Status<'_>) -> Option<Cancel> {
+    let mut cancel = None;
+    let quiet = Palette::current(ui).quiet;
+    ui.horizontal_centered(|ui| {
+        if let Some(opened) = status.opened {
+            let design = &opened.design;
+            let (ends, picks) = (design.pattern.ends(), design.pattern.picks());
+            ui.label(format!("{} · {ends} ends × {picks} picks", opened.name()));
+        }
+        if let Some((end, pick)) = status.crossing {
+            ui.label(RichText::new(format!("end {end} · pick {pick}")).color(quiet));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(progress) = &status.export {
+                if ui.small_button("Cancel export").clicked() {
+                    cancel = Some(Cancel::Export);
+                }
+                ui.label(format!("Exporting: {progress}"));
+                ui.separator();
+            }
+            if preview_ui(ui, status) {
+                cancel = Some(Cancel::Preview);
+            }
+        });
+    });
+    cancel
+}
+
+/// The right end, laid out from right to left; true when its button was clicked.
+fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
+    let palette = Palette::current(ui);
+    match status.phase {
+        Phase::Preparing { stage, fraction } => {
+            let cancelled = ui.small_button("Cancel").clicked();
+            ui.add(
+                ProgressBar::new(*fraction)
+                    .desired_width(tokens::SCALE_BAR)
+                    .desired_height(tokens::GAP),
+            );
+            ui.label(stage);
+            return cancelled;
+        }
+        Phase::Failed(_) => {
+            ui.label(RichText::new("⊗ Error: not drawn").color(palette.error));
+        }
+        _ => {
+            if let Some(shown) = status.shown {
+                ui.label(quality(shown, status));
+            }
+        }
+    }
+    false
+}
+
+fn quality(shown: &Shown, status: &Status<'_>) -> String {
+    let error = shown
+        .error
+        .map_or_else(String::new, |error| format!(" · error {:.1} %", error * 100.0));
+    let state = match status.phase {
+        _ if status.paused => " · paused",
+        Phase::Stopped => " · stopped",
+        Phase::Done => " · done",
+        _ if !shown.full_size => " · coarse",
+        _ => "",
+    };
+    format!("{} spp · {:.1} s{error}{state}", shown.spp, shown.seconds)
+}
