@@ -4,10 +4,43 @@
 //! and colour and gloss of each yarn. A [`Design`] holds these and resolves, for any
 //! crossing of the endless cloth, which yarn is where and which lies on top.
 
+//!
+//! | file | holds |
+//! |---|---|
+//! | `pattern` | the weave, one bit a crossing |
+//! | `weaves` | weaves by notation ("2/2 twill", "1/7 satin move 3") |
+//! | `draft` | threading, tie-up and treadling, and the weave they make |
+//! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
+//! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
+//! | `document` | the design that holds all of these together |
+//! | `floats` | what a designer checks first |
+
+mod document;
+mod draft;
+mod floats;
+mod grid;
 mod lattice;
+mod maps;
 mod pattern;
+mod sett;
+mod structure;
+mod weaves;
 mod yarn;
 
-pub use lattice::{Lattice, Repeat};
-pub use pattern::WeavePattern;
-pub use yarn::{Family, Srgb, Yarn, YarnId};
+pub(crate) use document::lcm;
+pub use document::{
+    Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
+};
+pub use draft::{Draft, DraftError, Lifting, Shed, Ties};
+pub use floats::{FloatKind, FloatLengths, FloatReport, SeamFloat, floats, longest_float};
+pub use grid::Grid;
+pub use lattice::{Lattice, LatticeError, Repeat};
+pub use maps::{YarnMap, YarnMaps};
+pub(crate) use pattern::check_size;
+pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
+pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
+pub use structure::{Corrections, Fill, Filled, Region, Regions, Structure, StructureError};
+pub use weaves::{MAX_REPEAT, NotationError, satin, satin_moves, weave};
+pub use yarn::{
+    ColourError, Family, FamilyError, FamilyNumbers, Srgb, USUAL_SURFACE_SHARE, Yarn, YarnId,
+};

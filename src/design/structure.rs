@@ -1,0 +1,305 @@
+//! What a weave is made of: a pattern, a draft, a notation, or regions of weaves.
+
+use super::draft::Draft;
+use super::grid::Grid;
+use super::pattern::{SizeError, WeavePattern, check_size};
+use super::weaves::{NotationError, weave};
+
+/// A small weave to fill with: its notation if it has one, and its repeat.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fill {
+    notation: Option<String>,
+    pattern: WeavePattern,
+}
+
+impl Fill {
+    /// The weave of a notation ("1/7 satin move 3").
+    ///
+    /// # Errors
+    /// [`NotationError`], see [`super::weave`].
+    pub fn by_notation(notation: &str) -> Result<Self, NotationError> {
+        Ok(Self {
+            pattern: weave(notation)?,
+            notation: Some(notation.trim().to_owned()),
+        })
+    }
+
+    /// A drawn repeat.
+    pub fn drawn(pattern: WeavePattern) -> Self {
+        Self {
+            notation: None,
+            pattern,
+        }
+    }
+
+    /// The notation it was made by, if any.
+    pub fn notation(&self) -> Option<&str> {
+        self.notation.as_deref()
+    }
+
+    /// One repeat.
+    pub fn pattern(&self) -> &WeavePattern {
+        &self.pattern
+    }
+}
+
+/// One colour of a jacquard's artwork: the weave that fills it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Region {
+    /// What the designer calls it.
+    pub name: String,
+    /// The weave that fills it.
+    pub fill: Fill,
+    /// The crossing (end, pick) where the weave's own (0, 0) lies.
+    pub origin: (i32, i32),
+}
+
+/// Crossings set by hand, over whatever the regions weave.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Corrections {
+    /// Where a correction stands.
+    mask: WeavePattern,
+    /// What it says there.
+    value: WeavePattern,
+}
+
+impl Corrections {
+    /// From two patterns of one size: where, and what (ignored elsewhere).
+    ///
+    /// # Errors
+    /// [`StructureError::Corrections`] if the sizes differ.
+    pub fn new(mask: WeavePattern, value: WeavePattern) -> Result<Self, StructureError> {
+        if (mask.ends(), mask.picks()) != (value.ends(), value.picks()) {
+            return Err(StructureError::Corrections);
+        }
+        Ok(Self { mask, value })
+    }
+
+    /// Where corrections stand.
+    pub fn mask(&self) -> &WeavePattern {
+        &self.mask
+    }
+
+    /// What they say.
+    pub fn value(&self) -> &WeavePattern {
+        &self.value
+    }
+}
+
+/// A jacquard's artwork: a region for every crossing, the weave of each region, and hand
+/// corrections over them. Changing a region's weave keeps outlines and corrections.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Regions {
+    map: Grid<u16>,
+    palette: Vec<Region>,
+    corrections: Option<Corrections>,
+}
+
+impl Regions {
+    /// Artwork from the region number of every crossing and the regions.
+    ///
+    /// # Errors
+    /// [`StructureError`] if a crossing names a region that does not exist, or the
+    /// corrections have another size.
+    pub fn new(
+        map: Grid<u16>,
+        palette: Vec<Region>,
+        corrections: Option<Corrections>,
+    ) -> Result<Self, StructureError> {
+        let regions = palette.len();
+        if let Some(region) = map.max()
+            && usize::from(region) >= regions
+        {
+            return Err(StructureError::Region { region, regions });
+        }
+        if let Some(corrections) = &corrections
+            && (corrections.mask.ends(), corrections.mask.picks()) != (map.ends(), map.picks())
+        {
+            return Err(StructureError::Corrections);
+        }
+        Ok(Self {
+            map,
+            palette,
+            corrections,
+        })
+    }
+
+    /// The region of every crossing.
+    pub fn map(&self) -> &Grid<u16> {
+        &self.map
+    }
+
+    /// The regions.
+    pub fn palette(&self) -> &[Region] {
+        &self.palette
+    }
+
+    /// The hand corrections, if any.
+    pub fn corrections(&self) -> Option<&Corrections> {
+        self.corrections.as_ref()
+    }
+
+    /// Gives a region another weave; outlines and corrections stay. False if there is no
+    /// such region.
+    pub fn set_fill(&mut self, region: u16, fill: Fill) -> bool {
+        match self.palette.get_mut(usize::from(region)) {
+            Some(entry) => {
+                entry.fill = fill;
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// The drawdown.
+    pub fn weave(&self) -> WeavePattern {
+        let mut pattern = WeavePattern::from_fn(self.map.ends(), self.map.picks(), |end, pick| {
+            let region = &self.palette[usize::from(self.map.get(end, pick))];
+            region.fill.pattern.get_wrapped(
+                i64::from(end) - i64::from(region.origin.0),
+                i64::from(pick) - i64::from(region.origin.1),
+            )
+        });
+        if let Some(corrections) = &self.corrections {
+            for pick in 0..pattern.picks() {
+                for word in 0..pattern.words_per_pick() {
+                    let mask = corrections.mask.pick_word(word, pick);
+                    let value = corrections.value.pick_word(word, pick);
+                    let woven = pattern.pick_word(word, pick);
+                    pattern.set_pick_word(word, pick, woven & !mask | value & mask);
+                }
+            }
+        }
+        pattern
+    }
+}
+
+/// A weave repeated over a panel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Filled {
+    fill: Fill,
+    ends: u32,
+    picks: u32,
+}
+
+impl Filled {
+    /// `fill` repeated over `ends` × `picks`, starting at crossing (0, 0).
+    ///
+    /// # Errors
+    /// [`SizeError`] for an empty or too large panel.
+    pub fn new(fill: Fill, ends: u32, picks: u32) -> Result<Self, SizeError> {
+        check_size(u64::from(ends), u64::from(picks))?;
+        Ok(Self { fill, ends, picks })
+    }
+
+    /// One repeat of a notation's weave.
+    ///
+    /// # Errors
+    /// [`NotationError`], see [`super::weave`].
+    pub fn once(notation: &str) -> Result<Self, NotationError> {
+        let fill = Fill::by_notation(notation)?;
+        let (ends, picks) = (fill.pattern.ends(), fill.pattern.picks());
+        Ok(Self { fill, ends, picks })
+    }
+
+    /// The weave.
+    pub fn fill(&self) -> &Fill {
+        &self.fill
+    }
+
+    /// Ends and picks of the panel.
+    pub fn size(&self) -> (u32, u32) {
+        (self.ends, self.picks)
+    }
+}
+
+/// Regions that do not fit together.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StructureError {
+    /// A crossing names a region that is not there.
+    #[error("a crossing names region {region}, but the palette has {regions}: add it")]
+    Region {
+        /// The region number, from 0.
+        region: u16,
+        /// Regions there are.
+        regions: usize,
+    },
+    /// Corrections of another size.
+    #[error("the corrections have another size than the design: draw them on the same grid")]
+    Corrections,
+}
+
+/// Where a design's weave comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Structure {
+    /// A drawdown, crossing by crossing.
+    Pattern(WeavePattern),
+    /// A shaft draft.
+    Draft(Draft),
+    /// A weave repeated over a panel.
+    Weave(Filled),
+    /// Regions of weaves.
+    Regions(Regions),
+}
+
+impl Structure {
+    /// Ends and picks of the design.
+    pub fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Pattern(pattern) => (pattern.ends(), pattern.picks()),
+            Self::Draft(draft) => (draft.ends(), draft.picks()),
+            Self::Weave(filled) => filled.size(),
+            Self::Regions(regions) => (regions.map.ends(), regions.map.picks()),
+        }
+    }
+
+    /// The drawdown.
+    pub fn weave(&self) -> WeavePattern {
+        match self {
+            Self::Pattern(pattern) => pattern.clone(),
+            Self::Draft(draft) => draft.drawdown(),
+            Self::Weave(filled) => {
+                let (ends, picks) = filled.size();
+                filled.fill.pattern.repeated(ends, picks, (0, 0))
+            }
+            Self::Regions(regions) => regions.weave(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn artwork() -> Regions {
+        let map = Grid::from_fn(8, 4, |end, _| u16::from(end >= 4)).unwrap();
+        let region = |name: &str, notation| Region {
+            name: name.into(),
+            fill: Fill::by_notation(notation).unwrap(),
+            origin: (0, 0),
+        };
+        let palette = vec![region("ground", "plain"), region("figure", "2/2 twill")];
+        let mut mask = WeavePattern::new(8, 4);
+        mask.set(0, 0, true);
+        let corrections = Corrections::new(mask.clone(), WeavePattern::new(8, 4)).unwrap();
+        Regions::new(map, palette, Some(corrections)).unwrap()
+    }
+
+    #[test]
+    fn regions_weave_their_fills_and_corrections_stay() {
+        let mut regions = artwork();
+        let expected = ".#.#..##\n#.#..##.\n.#.###..\n..#.#..#\n";
+        assert_eq!(regions.weave().to_string(), expected);
+        assert!(regions.set_fill(0, Fill::by_notation("2/2 basket").unwrap()));
+        assert!(!regions.weave().get(0, 0), "the correction stands");
+        assert!(regions.weave().get(1, 0), "the new weave shows");
+        assert!(!regions.set_fill(7, Fill::by_notation("plain").unwrap()));
+    }
+
+    #[test]
+    fn a_region_that_is_missing_is_named() {
+        let map = Grid::filled(4, 4, 3).unwrap();
+        let message = Regions::new(map, Vec::new(), None).unwrap_err().to_string();
+        assert!(message.contains("names region 3"), "{message}");
+    }
+}
