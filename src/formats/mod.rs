@@ -1,1 +1,5 @@
 //! One file a format, reading and writing.
+
+pub mod atomic;
+pub mod exr;
+pub mod png;

@@ -72,7 +72,6 @@ pub trait Medium: Sync {
     fn bounds(&self) -> Bounds;
 
     /// Starts a walk over the part of the ray with 0 ≤ t ≤ `t_max` (mm, may be infinite).
-    /// `seed` picks the stochastic taps of this walk.
     fn walk(&self, ray: &Ray, t_max: f32) -> Self::Walk<'_>;
 
     /// Single-scattering albedo (linear RGB) of an optics id that a voxel carried.

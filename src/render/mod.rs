@@ -1,5 +1,39 @@
-//! Path tracing of participating media made of fibres.
+//! Path tracing of participating media made of fibres (Zhao 2012 §6, after Jakob 2010
+//! and Heitz 2015).
+//!
+//! A [`Medium`] answers two questions: what is at a point, and how much can be on a
+//! stretch of a ray. [`track`] makes free flights and shadows of that for anything that
+//! is a [`Scatterer`]; [`path`] strings flights to paths with [`sggx`] scattering under a
+//! [`LightRig`]; [`still::render`] sums paths seen by a [`Camera`] on a [`Film`], pass by
+//! pass, with the [`error`] reached; [`tone`] makes a picture of it.
 
+pub mod camera;
+pub mod counters;
+pub mod environment;
+pub mod error;
+pub mod film;
+pub mod light;
 mod medium;
+pub mod path;
+pub mod random;
+pub mod settings;
+pub mod sggx;
+pub mod stack;
+pub mod still;
+pub mod tone;
+pub mod track;
 
+pub use camera::{Camera, View};
+pub use counters::Counters;
+pub use environment::{Dark, Dome, Environment, EnvironmentImage, luminance};
+pub use error::{ErrorEstimate, estimate};
+pub use film::{Film, FirstHit, Pixel, Sample};
+pub use light::{LightError, LightRig, PRESET_NAMES, Sky, Sun};
 pub use medium::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
+pub use random::Random;
+pub use settings::{Background, Backing, RenderSettings};
+pub use sggx::Fibre;
+pub use stack::Stack;
+pub use still::{Progress, RenderOutcome, render};
+pub use tone::Tone;
+pub use track::{Both, Collision, Nothing, Scatterer};

@@ -1,0 +1,181 @@
+//! OpenEXR: linear light and its layers out, environments in.
+//!
+//! A still is one part of 32-bit channels, losslessly compressed: `R G B A` (linear
+//! sRGB, premultiplied, never denoised), `albedo.R/G/B`, `normal.X/Y/Z` (cloth space),
+//! `depth.Z` (mm), `yarn.ID` (unsigned; 4294967295 = nothing) and `variance.Y` (of the
+//! pixel's mean luminance).
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use exr::meta::attribute::{AttributeValue, Text};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, Layer,
+    LayerAttributes, LineOrder, ReadChannels, ReadLayers, WritableImage,
+};
+use glam::Vec3;
+
+use super::atomic;
+use crate::render::{EnvironmentImage, Film};
+
+/// Channel value of `yarn.ID` where nothing was met.
+pub const NO_YARN: u32 = u32::MAX;
+
+/// Why an EXR could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExrError {
+    /// The codec refused.
+    #[error("exr: {0}; check that the file is a complete OpenEXR picture")]
+    Codec(#[from] exr::error::Error),
+    /// A file could not be read or written.
+    #[error("{path}: {source}; check the path and the space left", path = path.display())]
+    File {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// No colour in it.
+    #[error("{path}: no R, G and B channels: save the environment as an RGB picture", path = path.display())]
+    NoColour {
+        /// Where.
+        path: PathBuf,
+    },
+    /// Too large for an environment.
+    #[error("{path}: {width}x{height} is more than 64 megapixels: scale the environment down", path = path.display())]
+    TooLarge {
+        /// Where.
+        path: PathBuf,
+        /// Pixels across.
+        width: usize,
+        /// Pixels down.
+        height: usize,
+    },
+}
+
+/// Encodes a film into the bytes of an EXR file. `texts` become string attributes;
+/// `pixels_per_mm` the attribute `pixelsPerMillimetre`.
+pub fn encode(
+    film: &Film,
+    pixels_per_mm: f32,
+    texts: &[(String, String)],
+) -> Result<Vec<u8>, ExrError> {
+    let size = (film.width() as usize, film.height() as usize);
+    let mut attributes = LayerAttributes::named("still");
+    for (keyword, text) in texts {
+        attributes.other.insert(
+            Text::new_or_none(keyword).unwrap_or_default(),
+            AttributeValue::Text(
+                text.as_str()
+                    .chars()
+                    .filter(char::is_ascii)
+                    .collect::<String>()
+                    .as_str()
+                    .into(),
+            ),
+        );
+    }
+    attributes.other.insert(
+        "pixelsPerMillimetre".into(),
+        AttributeValue::F32(pixels_per_mm),
+    );
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        line_order: LineOrder::Increasing,
+        ..Encoding::SMALL_LOSSLESS
+    };
+    let layer = Layer::new(size, attributes, encoding, channels(film));
+    let mut image = Image::from_layer(layer);
+    image.attributes = ImageAttributes::with_size(size);
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+/// Writes a film as an EXR file, whole or not at all.
+pub fn write(
+    path: &Path,
+    film: &Film,
+    pixels_per_mm: f32,
+    texts: &[(String, String)],
+) -> Result<(), ExrError> {
+    let bytes = encode(film, pixels_per_mm, texts)?;
+    atomic::write(path, &bytes).map_err(|source| ExrError::File {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn channels(film: &Film) -> AnyChannels<FlatSamples> {
+    let pixels = film.pixels();
+    let float = |name: &str, value: &dyn Fn(&crate::render::Pixel) -> f32| {
+        AnyChannel::new(name, FlatSamples::F32(pixels.iter().map(value).collect()))
+    };
+    let mut list = vec![
+        float("R", &|p| p.mean().x),
+        float("G", &|p| p.mean().y),
+        float("B", &|p| p.mean().z),
+        float("A", &|p| p.alpha()),
+        float("albedo.R", &|p| p.albedo().x),
+        float("albedo.G", &|p| p.albedo().y),
+        float("albedo.B", &|p| p.albedo().z),
+        float("normal.X", &|p| p.normal().x),
+        float("normal.Y", &|p| p.normal().y),
+        float("normal.Z", &|p| p.normal().z),
+        float("depth.Z", &|p| p.depth()),
+        float("variance.Y", &|p| p.variance() as f32),
+    ];
+    let yarns = pixels.iter().map(|p| p.optics().unwrap_or(NO_YARN));
+    list.push(AnyChannel::new(
+        "yarn.ID",
+        FlatSamples::U32(yarns.collect()),
+    ));
+    AnyChannels::sort(list.into_iter().collect())
+}
+
+/// Reads an equirectangular environment: the first part that has R, G and B.
+pub fn read_environment(path: &Path) -> Result<EnvironmentImage, ExrError> {
+    let bytes = std::fs::read(path).map_err(|source| ExrError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    // The size first, before its memory is asked for.
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false)?;
+    for header in &meta.headers {
+        let (width, height) = (header.layer_size.x(), header.layer_size.y());
+        if width.saturating_mul(height) > 64 << 20 {
+            return Err(ExrError::TooLarge {
+                path: path.to_owned(),
+                width,
+                height,
+            });
+        }
+    }
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(&bytes))?;
+    for layer in &image.layer_data {
+        let find = |name: &str| {
+            let mut list = layer.channel_data.list.iter();
+            list.find(|c| c.name.eq_case_insensitive(name))
+                .map(|c| c.sample_data.values_as_f32().collect::<Vec<f32>>())
+        };
+        if let (Some(r), Some(g), Some(b)) = (find("R"), find("G"), find("B")) {
+            let pixels = r.iter().zip(&g).zip(&b);
+            let pixels = pixels.map(|((&r, &g), &b)| Vec3::new(r, g, b)).collect();
+            let size = layer.size;
+            return EnvironmentImage::new(size.x(), size.y(), pixels).map_err(|_| {
+                ExrError::NoColour {
+                    path: path.to_owned(),
+                }
+            });
+        }
+    }
+    Err(ExrError::NoColour {
+        path: path.to_owned(),
+    })
+}

@@ -1,0 +1,154 @@
+//! Random numbers that are a hash of (seed, pixel, sample, dimension).
+//!
+//! No state is shared, so a picture does not depend on the number of threads or on the
+//! order of tiles: the n-th number of a sample of a pixel is always the same. The hash
+//! is splitmix64 (Steele, Lea, Flood 2014) over a key of the first three.
+
+use glam::Vec3;
+
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The largest number that [`Random`] returns: 1 − 2⁻²⁴.
+pub const LARGEST_BELOW_ONE: f32 = 1.0 - 1.0 / 16_777_216.0;
+
+/// splitmix64's finaliser: a bijection of 64 bits in which every bit of the input moves
+/// about half of the output.
+#[inline]
+pub fn mix(bits: u64) -> u64 {
+    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ (bits >> 31)
+}
+
+/// The stream of uniform numbers in [0, 1) of one sample of one pixel.
+#[derive(Debug, Clone)]
+pub struct Random {
+    state: u64,
+    step: u64,
+}
+
+impl Random {
+    /// The stream of `(seed, pixel, sample)`; drawing from it counts the dimensions.
+    #[inline]
+    pub fn new(seed: u64, pixel: u64, sample: u64) -> Self {
+        let key = mix(seed.wrapping_add(GOLDEN));
+        let key = mix(key ^ pixel.wrapping_mul(GOLDEN));
+        let key = mix(key ^ sample.wrapping_mul(0xd1b5_4a32_d192_ed03));
+        Self {
+            state: key,
+            step: GOLDEN,
+        }
+    }
+
+    /// A stream that answers the same 64 bits for ever: 0 makes every number 0, all
+    /// ones make every number 1 − 2⁻²⁴. For tests of the extremes.
+    pub fn stuck_at(bits: u64) -> Self {
+        Self {
+            state: unmix(bits),
+            step: 0,
+        }
+    }
+
+    /// The next 64 bits.
+    #[inline]
+    pub fn bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(self.step);
+        mix(self.state)
+    }
+
+    /// One uniform number.
+    #[inline]
+    pub fn uniform(&mut self) -> f32 {
+        unit(self.bits() >> 40)
+    }
+
+    /// Two uniform numbers from one draw.
+    #[inline]
+    pub fn pair(&mut self) -> [f32; 2] {
+        let bits = self.bits();
+        [unit(bits >> 40), unit((bits >> 16) & 0xff_ffff)]
+    }
+
+    /// Three uniform numbers of 21 bits each, for stochastic filters.
+    #[inline]
+    pub fn tap(&mut self) -> Vec3 {
+        let bits = self.bits();
+        let part = |shift: u32| ((bits >> shift) & 0x1f_ffff) as f32 * (1.0 / 2_097_152.0);
+        Vec3::new(part(43), part(22), part(1))
+    }
+}
+
+/// 24 bits as a number in [0, 1).
+#[inline]
+fn unit(bits: u64) -> f32 {
+    bits as f32 * (1.0 / 16_777_216.0)
+}
+
+/// The optical depth of a free flight: −ln(1−u) for u in [0, 1); 0 for u = 0 and 16.6
+/// at most.
+#[inline]
+pub fn free_path(u: f32) -> f32 {
+    -(1.0 - u).ln()
+}
+
+/// A point uniform on the unit disk, by angle and radius.
+#[inline]
+pub fn disk(u: [f32; 2]) -> (f32, f32) {
+    let radius = u[0].sqrt();
+    let (sin, cos) = (std::f32::consts::TAU * u[1]).sin_cos();
+    (radius * cos, radius * sin)
+}
+
+/// The inverse of [`mix`].
+fn unmix(bits: u64) -> u64 {
+    let undo = |bits: u64, shift: u32| {
+        let mut result = bits;
+        for _ in 0..64 / shift {
+            result = bits ^ (result >> shift);
+        }
+        result
+    };
+    let bits = undo(bits, 31).wrapping_mul(0x3196_42b2_d24d_8ec3);
+    let bits = undo(bits, 27).wrapping_mul(0x96de_1b17_3f11_9089);
+    undo(bits, 30)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stuck_streams_reach_both_ends() {
+        let mut low = Random::stuck_at(0);
+        let mut high = Random::stuck_at(u64::MAX);
+        for _ in 0..3 {
+            assert_eq!(low.pair(), [0.0, 0.0]);
+            assert_eq!(high.pair(), [LARGEST_BELOW_ONE; 2]);
+            assert!(high.tap().max_element() < 1.0);
+        }
+        assert_eq!(free_path(0.0), 0.0);
+        assert!((16.0..17.0).contains(&free_path(LARGEST_BELOW_ONE)));
+    }
+
+    #[test]
+    fn numbers_are_uniform_and_differ_by_every_key() {
+        let mut sum = [0.0f64; 2];
+        let mut squares = 0.0f64;
+        let n = 200_000;
+        for k in 0..n {
+            let [a, b] = Random::new(1, k, k / 7).pair();
+            sum[0] += f64::from(a);
+            sum[1] += f64::from(b);
+            squares += f64::from(a) * f64::from(b);
+        }
+        let n = n as f64;
+        // Standard error of a mean of uniforms is 0.289/sqrt(n).
+        assert!((sum[0] / n - 0.5).abs() < 5.0 * 0.289 / n.sqrt());
+        assert!((sum[1] / n - 0.5).abs() < 5.0 * 0.289 / n.sqrt());
+        assert!((squares / n - 0.25).abs() < 5.0 * 0.25 / n.sqrt());
+        let first = |s, p, k| Random::new(s, p, k).bits();
+        assert_ne!(first(0, 0, 0), first(1, 0, 0));
+        assert_ne!(first(0, 0, 0), first(0, 1, 0));
+        assert_ne!(first(0, 0, 0), first(0, 0, 1));
+    }
+}
