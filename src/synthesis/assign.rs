@@ -1,0 +1,342 @@
+//! Which block every crossing of a design copies. Zhao 2012 §5.3 and §5.4.
+//!
+//! Comes in: a weave pattern, its lattice, a catalogue. Goes out: an [`Assignment`].
+//! Every choice depends on the keys of one column alone, hence on that column and its two
+//! neighbours: columns are worked out in parallel, and an edit redoes three of them.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::design::{Lattice, Repeat, WeavePattern};
+use crate::job::Job;
+
+use super::SynthesisError;
+use super::catalogue::{Catalogue, NO_BLOCK, Side};
+use super::chain::{Crossing, Scratch, cover};
+use super::hash::{hash, index_below};
+
+/// How a block is chosen for each crossing, from crude to reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub enum Method {
+    /// Any block with the right yarn on top.
+    Naive,
+    /// Any block with the most matching neighbours.
+    Greedy,
+    /// Of those, the ones that continue each other along the warp as often as possible.
+    #[default]
+    Dp,
+}
+
+/// The block each crossing of a design copies: two bytes a crossing, in columns that
+/// clones share until they are edited.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Assignment {
+    columns: Vec<Arc<[u16]>>,
+    picks: u32,
+    lattice: Lattice,
+    method: Method,
+    seed: u64,
+}
+
+/// Chooses a block for every crossing of `pattern`.
+///
+/// Correct wherever the catalogue allows it, then the most matching neighbours (both
+/// exactly); [`Method::Dp`] then makes each column as continuous as can be (exactly).
+/// The same input gives the same blocks for any number of threads.
+///
+/// # Errors
+/// When the lattice is dropped in both directions, or the job is cancelled.
+pub fn assign(
+    pattern: &WeavePattern,
+    lattice: Lattice,
+    catalogue: &Catalogue,
+    method: Method,
+    seed: u64,
+    job: &Job,
+) -> Result<Assignment, SynthesisError> {
+    check_lattice(lattice)?;
+    let blank: Arc<[u16]> = Arc::from([]);
+    let mut assignment = Assignment {
+        columns: vec![blank; pattern.ends() as usize],
+        picks: pattern.picks(),
+        lattice,
+        method,
+        seed,
+    };
+    let all = vec![true; pattern.ends() as usize];
+    assignment.redo(pattern, catalogue, &all, job)?;
+    Ok(assignment)
+}
+
+/// Refuses a lattice that is dropped in both directions: its neighbours are not mutual.
+fn check_lattice(lattice: Lattice) -> Result<(), SynthesisError> {
+    match (lattice.across, lattice.along) {
+        (Repeat::Dropped(_), Repeat::Dropped(_)) => Err(SynthesisError::DroppedTwice),
+        _ => Ok(()),
+    }
+}
+
+impl Assignment {
+    /// Number of ends of the design.
+    pub fn ends(&self) -> u32 {
+        self.columns.len() as u32
+    }
+
+    /// Number of picks of the design.
+    pub fn picks(&self) -> u32 {
+        self.picks
+    }
+
+    /// How the design repeats.
+    pub fn lattice(&self) -> Lattice {
+        self.lattice
+    }
+
+    /// How the blocks were chosen.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// The block of a crossing inside the design.
+    #[inline]
+    pub fn block(&self, end: u32, pick: u32) -> u16 {
+        self.columns[end as usize][pick as usize]
+    }
+
+    /// The blocks of one end, from pick 0 upwards.
+    pub fn column(&self, end: u32) -> &[u16] {
+        &self.columns[end as usize]
+    }
+
+    /// The block of a crossing of the endless cloth, before randomisation; `None` where
+    /// there is no cloth.
+    #[inline]
+    pub fn at(&self, end: i64, pick: i64) -> Option<u16> {
+        let (end, pick) = self.lattice.wrap(end, pick, self.ends(), self.picks)?;
+        Some(self.block(end, pick))
+    }
+
+    /// Bytes held by the blocks.
+    pub fn bytes(&self) -> usize {
+        let column = self.picks as usize * size_of::<u16>() + 2 * size_of::<usize>();
+        self.columns.len() * (column + size_of::<Arc<[u16]>>())
+    }
+
+    /// Follows a change of `cells` that has led to `pattern`, and returns the ends whose
+    /// columns were worked out again, in order.
+    ///
+    /// The result is bit for bit what [`assign`] makes of the new pattern. Work is done
+    /// for the columns of the cells and their neighbours only; when the design is dropped
+    /// along the warp, columns continue in each other and are redone together.
+    ///
+    /// # Errors
+    /// When the pattern's size has changed, or the job is cancelled; the assignment is
+    /// then as it was.
+    pub fn edit(
+        &mut self,
+        pattern: &WeavePattern,
+        catalogue: &Catalogue,
+        cells: &[(u32, u32)],
+        job: &Job,
+    ) -> Result<Vec<u32>, SynthesisError> {
+        if (pattern.ends(), pattern.picks()) != (self.ends(), self.picks) {
+            return Err(SynthesisError::SizeChanged {
+                ends: pattern.ends(),
+                picks: pattern.picks(),
+                was_ends: self.ends(),
+                was_picks: self.picks,
+            });
+        }
+        let mut stale = vec![false; self.columns.len()];
+        for &(end, pick) in cells {
+            if end >= self.ends() || pick >= self.picks {
+                continue;
+            }
+            stale[end as usize] = true;
+            for side in Side::ALL {
+                let (dx, dy) = side.offset();
+                let beside = (i64::from(end) + dx, i64::from(pick) + dy);
+                let (end, _) = neighbour_cell(pattern, self.lattice, beside.0, beside.1);
+                stale[end as usize] = true;
+            }
+        }
+        self.redo(pattern, catalogue, &stale, job)
+    }
+
+    /// Works out every chain of columns that holds a stale one.
+    fn redo(
+        &mut self,
+        pattern: &WeavePattern,
+        catalogue: &Catalogue,
+        stale: &[bool],
+        job: &Job,
+    ) -> Result<Vec<u32>, SynthesisError> {
+        let chains = stale_chains(self.lattice, pattern, stale);
+        let done = AtomicUsize::new(0);
+        let rebuilt: Vec<Vec<Arc<[u16]>>> = chains
+            .par_iter()
+            .map_init(Scratch::default, |scratch, chain| {
+                job.check()?;
+                let columns = match self.method {
+                    Method::Dp => self.best_chain(pattern, catalogue, chain, scratch),
+                    Method::Naive | Method::Greedy => chain
+                        .iter()
+                        .map(|&end| self.independent_column(pattern, catalogue, end))
+                        .collect(),
+                };
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                if done.is_multiple_of(64) {
+                    job.report("synthesis", done as f32 / chains.len() as f32);
+                }
+                Ok(columns)
+            })
+            .collect::<Result<_, SynthesisError>>()?;
+        let mut redone = Vec::new();
+        for (chain, columns) in chains.iter().zip(rebuilt) {
+            for (&end, column) in chain.iter().zip(columns) {
+                self.columns[end as usize] = column;
+                redone.push(end);
+            }
+        }
+        redone.sort_unstable();
+        Ok(redone)
+    }
+
+    /// The columns of a chain, as continuous along the warp as can be.
+    fn best_chain(
+        &self,
+        pattern: &WeavePattern,
+        catalogue: &Catalogue,
+        chain: &[u32],
+        scratch: &mut Scratch,
+    ) -> Vec<Arc<[u16]>> {
+        let picks = self.picks as usize;
+        let mut keys = Vec::with_capacity(chain.len() * picks);
+        for &end in chain {
+            column_keys(pattern, self.lattice, end, &mut keys);
+        }
+        let crossing = |row: usize| Crossing {
+            end: chain[row / picks],
+            pick: (row % picks) as u32,
+        };
+        let cyclic = self.lattice.along != Repeat::None;
+        let mut blocks = Vec::new();
+        cover(
+            catalogue,
+            &keys,
+            cyclic,
+            crossing,
+            self.seed,
+            scratch,
+            &mut blocks,
+        );
+        blocks.chunks_exact(picks).map(Arc::from).collect()
+    }
+
+    /// A column whose crossings are chosen one by one, at random.
+    fn independent_column(
+        &self,
+        pattern: &WeavePattern,
+        catalogue: &Catalogue,
+        end: u32,
+    ) -> Arc<[u16]> {
+        let mut keys = Vec::with_capacity(self.picks as usize);
+        column_keys(pattern, self.lattice, end, &mut keys);
+        let choose = |(pick, &key): (usize, &u8)| {
+            let list = match self.method {
+                Method::Naive => catalogue.correct(key & 1 == 1),
+                Method::Greedy | Method::Dp => catalogue.candidates(key),
+            };
+            let random = hash(self.seed, u64::from(end), pick as u64);
+            list.get(index_below(random, list.len()))
+                .copied()
+                .unwrap_or(NO_BLOCK)
+        };
+        keys.iter().enumerate().map(choose).collect()
+    }
+}
+
+/// The cycles of columns that continue in each other along the warp and hold a stale
+/// column, each from its leftmost column on.
+fn stale_chains(lattice: Lattice, pattern: &WeavePattern, stale: &[bool]) -> Vec<Vec<u32>> {
+    let (ends, picks) = (pattern.ends(), pattern.picks());
+    let mut chains = Vec::new();
+    let mut seen = vec![false; ends as usize];
+    for first in 0..ends {
+        if seen[first as usize] {
+            continue;
+        }
+        let mut chain = Vec::with_capacity(1);
+        let mut end = first;
+        while !seen[end as usize] {
+            seen[end as usize] = true;
+            chain.push(end);
+            let above = lattice.wrap(i64::from(end), i64::from(picks), ends, picks);
+            end = above.map_or(first, |(end, _)| end);
+        }
+        if chain.iter().any(|&end| stale[end as usize]) {
+            chains.push(chain);
+        }
+    }
+    chains
+}
+
+/// The design's crossing that a neighbour's bit is read from.
+///
+/// Where the cloth ends there is no neighbour; the pattern is then read as if it went on
+/// straight, because a key needs some bit and this one is the weave's own.
+fn neighbour_cell(pattern: &WeavePattern, lattice: Lattice, end: i64, pick: i64) -> (u32, u32) {
+    let endless = |repeat: Repeat| match repeat {
+        Repeat::None => Repeat::Straight,
+        other => other,
+    };
+    let lattice = Lattice {
+        across: endless(lattice.across),
+        along: endless(lattice.along),
+    };
+    let cell = lattice.wrap(end, pick, pattern.ends(), pattern.picks());
+    cell.unwrap_or((0, 0))
+}
+
+/// Appends the keys of one end from pick 0 upwards.
+pub(super) fn column_keys(pattern: &WeavePattern, lattice: Lattice, end: u32, keys: &mut Vec<u8>) {
+    let picks = pattern.picks();
+    let bit = |end: i64, pick: i64| {
+        let (end, pick) = neighbour_cell(pattern, lattice, end, pick);
+        pattern.get(end, pick)
+    };
+    // Inside the design a neighbour is an index away; only the border needs the lattice.
+    let column = i64::from(end);
+    let inside = end > 0 && end + 1 < pattern.ends();
+    let sides = |pick: u32| {
+        if inside {
+            (pattern.get(end - 1, pick), pattern.get(end + 1, pick))
+        } else {
+            (
+                bit(column - 1, i64::from(pick)),
+                bit(column + 1, i64::from(pick)),
+            )
+        }
+    };
+    let mut below = bit(column, -1);
+    let mut centre = pattern.get(end, 0);
+    for pick in 0..picks {
+        let above = if pick + 1 < picks {
+            pattern.get(end, pick + 1)
+        } else {
+            bit(column, i64::from(picks))
+        };
+        let (left, right) = sides(pick);
+        keys.push(
+            u8::from(centre)
+                | u8::from(left) << Side::Left as u8
+                | u8::from(right) << Side::Right as u8
+                | u8::from(below) << Side::Below as u8
+                | u8::from(above) << Side::Above as u8,
+        );
+        (below, centre) = (centre, above);
+    }
+}
