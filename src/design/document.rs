@@ -414,7 +414,17 @@ mod tests {
         assert!(missing.to_string().contains("weft names yarn 2"));
         assert!(cloth(YarnMaps::orders(Vec::new(), vec![YarnId(0)])).is_err());
         let design = cloth(YarnMaps::plain(YarnId(0), YarnId(1))).unwrap();
-        assert!(design.clone().with_sett(Sett::per_cm(f32::NAN, 1.0)).is_err());
-        assert!(design.clone().with_yarns(Vec::new(), design.maps().clone()).is_err());
+        assert!(
+            design
+                .clone()
+                .with_sett(Sett::per_cm(f32::NAN, 1.0))
+                .is_err()
+        );
+        assert!(
+            design
+                .clone()
+                .with_yarns(Vec::new(), design.maps().clone())
+                .is_err()
+        );
     }
 }

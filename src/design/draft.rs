@@ -457,9 +457,8 @@ mod tests {
     fn shafts_and_treadles_beyond_the_loom_are_refused() {
         let one = || Ties::from_rows([[0]]);
         let far = || Ties::from_rows([[7]]);
-        let plan = |threading, plan| {
-            Draft::new(1, 1, Shed::Rising, threading, Lifting::LiftPlan(plan))
-        };
+        let plan =
+            |threading, plan| Draft::new(1, 1, Shed::Rising, threading, Lifting::LiftPlan(plan));
         assert!(plan(one(), one()).is_ok());
         let message = plan(far(), one()).unwrap_err().to_string();
         assert!(message.contains("threading names shaft 8"), "{message}");

@@ -176,11 +176,7 @@ pub fn floats(pattern: &WeavePattern) -> FloatReport {
             .collect::<Vec<_>>()
     };
     let mut seam = named(&warp.seams, FloatKind::WarpFace, FloatKind::WarpBack);
-    seam.extend(named(
-        &weft.seams,
-        FloatKind::WeftBack,
-        FloatKind::WeftFace,
-    ));
+    seam.extend(named(&weft.seams, FloatKind::WeftBack, FloatKind::WeftFace));
     FloatReport {
         longest: lengths(warp.round, weft.round),
         longest_inside: lengths(warp.inside, weft.inside),

@@ -75,10 +75,7 @@ mod tests {
             Repeat::Dropped(by) => i64::from(by),
             _ => 0,
         };
-        [
-            (width, drop(lattice.across)),
-            (drop(lattice.along), height),
-        ]
+        [(width, drop(lattice.across)), (drop(lattice.along), height)]
     }
 
     proptest! {

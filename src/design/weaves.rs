@@ -418,10 +418,7 @@ mod tests {
             #...#",
         );
         assert_eq!(weave("Z 2/3 Twill").unwrap(), weave("twill 2/3").unwrap());
-        assert_ne!(
-            weave("s 2/3 twill").unwrap(),
-            weave("z 2/3 twill").unwrap()
-        );
+        assert_ne!(weave("s 2/3 twill").unwrap(), weave("z 2/3 twill").unwrap());
     }
 
     #[test]
@@ -440,10 +437,7 @@ mod tests {
     fn ratios_count_along_the_warp() {
         let pattern = weave("3/1/1/3 twill").unwrap();
         let column: Vec<bool> = (0..8).map(|pick| pattern.get(0, pick)).collect();
-        assert_eq!(
-            column,
-            [true, true, true, false, true, false, false, false]
-        );
+        assert_eq!(column, [true, true, true, false, true, false, false, false]);
         expect_pattern("2/2 warp rib", ".#\n.#\n#.\n#.");
         expect_pattern("2/2 weft rib", "..##\n##..");
         expect_pattern("2/2 basket", "..##\n..##\n##..\n##..");
@@ -557,7 +551,16 @@ mod tests {
         assert!(reason("99999999999 twill").contains("not a number"));
         assert!(reason("2/2 twill move 3").contains("satin"));
         assert!(reason("wavy 4/4 twill 90").contains("use 96"));
-        for notation in ["", "   ", "move", "twill", "🧵", "2/2", "s plain", "1/7 satin move 9"] {
+        for notation in [
+            "",
+            "   ",
+            "move",
+            "twill",
+            "🧵",
+            "2/2",
+            "s plain",
+            "1/7 satin move 9",
+        ] {
             let _ = reason(notation);
         }
     }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pickglass::render::{Backing, PRESET_NAMES, View};
 
-use crate::stub::still::{Backing, EffectChoice, View};
-use crate::values::{self, Dial, LightArg, PicturePath, SettArg, Size};
+use crate::stub::still::{EffectChoice, LightChoice};
+use crate::values::{self, Dial, PicturePath, SettArg, Size};
 
 /// Look closely at cloth that has not been woven yet.
 #[derive(Debug, Parser)]
@@ -143,19 +144,19 @@ pub struct StillArgs {
     #[arg(long, value_name = "E", value_parser = values::fraction)]
     pub error: Option<f64>,
     /// Where the eye is
-    #[arg(long, value_enum, default_value_t = View::Face)]
+    #[arg(long, default_value = "face", value_parser = values::view())]
     pub view: View,
     /// Width of cloth the picture shows, in mm [default: the view's own]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
     pub mm: Option<f64>,
     /// A light's name, or an equirectangular environment (.exr)
-    #[arg(long, value_name = "PRESET|EXR", default_value = "daylight", value_parser = values::light)]
-    pub light: LightArg,
+    #[arg(long, value_name = "PRESET|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
+    pub light: LightChoice,
     /// Exposure in stops
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::finite)]
     pub exposure: f64,
     /// What lies behind the cloth
-    #[arg(long, value_enum, default_value_t = Backing::None)]
+    #[arg(long, default_value = "none", value_parser = values::backing())]
     pub backing: Backing,
     /// What draws the picture
     #[arg(long, value_enum, default_value_t = RendererArg::Auto)]

@@ -2,8 +2,7 @@
 //! README's table are made from this list.
 
 use egui::{Key, KeyboardShortcut, Modifiers};
-
-use crate::stub::still::View;
+use pickglass::render::View;
 
 /// Something one can do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,11 +71,11 @@ pub const TABLE: &[Row] = &[
     row(Command::OpenPath, Menu::File, "Open by path…", "Type or paste the path of a file", ctrl(Key::L)),
     row(Command::Export, Menu::File, "Export still…", "Render the cloth as shown into a file", ctrl(Key::E)),
     row(Command::Quit, Menu::File, "Quit", "Close the window", ctrl(Key::Q)),
-    row(Command::Look(View::Face), Menu::View, "Face", "Straight down on the face", ctrl(Key::Num1)),
-    row(Command::Look(View::Back), Menu::View, "Back", "Straight down on the back", ctrl(Key::Num2)),
-    row(Command::Look(View::Close), Menu::View, "Close", "A few threads, filling the pane", ctrl(Key::Num3)),
-    row(Command::Look(View::Oblique), Menu::View, "Oblique", "From the side, as cloth on a table", ctrl(Key::Num4)),
-    row(Command::Look(View::Grazing), Menu::View, "Grazing", "Along the cloth", ctrl(Key::Num5)),
+    row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face, to true scale", ctrl(Key::Num1)),
+    row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", ctrl(Key::Num2)),
+    row(Command::Look(View::Close), Menu::View, "Close", "A few threads, as under a hand lens", ctrl(Key::Num3)),
+    row(Command::Look(View::Oblique), Menu::View, "Oblique", "From the lower edge, 45° above the cloth", ctrl(Key::Num4)),
+    row(Command::Look(View::Grazing), Menu::View, "Grazing", "From the lower edge, 18° above the cloth", ctrl(Key::Num5)),
     row(Command::Fit, Menu::View, "Fit the design", "Show one repeat of the whole design", plain(Key::F)),
     row(Command::ActualSize, Menu::View, "Actual size", "1 cm of cloth is about 1 cm of screen", plain(Key::Num1)),
     row(Command::ZoomIn, Menu::View, "Zoom in", "Look closer", plain(Key::Plus)),
@@ -95,7 +94,11 @@ pub fn markdown() -> String {
     for row in TABLE {
         if let Some(shortcut) = row.shortcut {
             let key = shortcut.format(&names, false);
-            text += &format!("| `{key}` | {}: {} |\n", row.label.trim_end_matches('…'), row.tip);
+            text += &format!(
+                "| `{key}` | {}: {} |\n",
+                row.label.trim_end_matches('…'),
+                row.tip
+            );
         }
     }
     text
@@ -111,7 +114,11 @@ mod tests {
             for b in &TABLE[index + 1..] {
                 assert_ne!(a.label, b.label);
                 assert_ne!(a.command, b.command);
-                assert!(a.shortcut.is_none() || a.shortcut != b.shortcut, "{}", a.label);
+                assert!(
+                    a.shortcut.is_none() || a.shortcut != b.shortcut,
+                    "{}",
+                    a.label
+                );
             }
         }
     }
@@ -119,7 +126,11 @@ mod tests {
     #[test]
     fn the_readme_has_this_table() {
         let readme = include_str!("../../README.md");
-        assert!(readme.contains(&markdown()), "put into README.md:\n{}", markdown());
+        assert!(
+            readme.contains(&markdown()),
+            "put into README.md:\n{}",
+            markdown()
+        );
     }
 
     #[test]

@@ -4,42 +4,45 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use pickglass::design::{Design, Positions, Sett, Srgb, WeavePattern, YarnId};
+
 use crate::cli::SettArgs;
-use crate::stub::design::{self, Design};
+use crate::stub::design::{self, Imported, LoadOptions};
 
 /// The preset that is shown when nothing is asked for.
 pub const DEFAULT_PRESET: &str = "herringbone";
 
-/// Where a design came from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Source {
-    Preset(String),
-    File(PathBuf),
-}
-
-/// A design with its source and the remarks made while reading it.
+/// A design with the remarks made while reading it, and its drawdown worked out once.
 #[derive(Clone)]
 pub struct Opened {
-    pub source: Source,
     pub design: Arc<Design>,
     pub warnings: Vec<String>,
+    weave: Arc<WeavePattern>,
+    ends: Arc<Positions>,
+    picks: Arc<Positions>,
 }
 
 impl Opened {
-    /// Opens a design argument: a preset's name, or a file. A file in the way wins over
-    /// a preset only when it is spelled with an ending or a folder.
+    /// Opens a design argument. A preset's name wins; `./twill` is a file all the same.
     pub fn argument(argument: &str, sett: &SettArgs) -> anyhow::Result<Self> {
-        let opened = match design::preset(argument) {
-            Some(design) => Self::preset_of(argument, design),
-            None => Self::file(Path::new(argument))?,
-        };
-        Ok(opened.with_sett(sett))
+        let sett = sett
+            .sett
+            .map(|sett| (sett.ends_per_cm as f32, sett.picks_per_cm as f32));
+        match design::preset(argument) {
+            Some(mut design) => {
+                if let Some((ends, picks)) = sett {
+                    design = design.with_sett(Sett::per_cm(ends, picks))?;
+                }
+                Ok(Self::new(design, Vec::new()))
+            }
+            None => Self::load(Path::new(argument), &LoadOptions { sett }),
+        }
     }
 
     /// Opens a preset by name.
     pub fn preset(name: &str) -> anyhow::Result<Self> {
         match design::preset(name) {
-            Some(design) => Ok(Self::preset_of(name, design)),
+            Some(design) => Ok(Self::new(design, Vec::new())),
             None => anyhow::bail!(
                 "{name}: no preset has this name: choose one of {}",
                 design::PRESETS.join(", ")
@@ -47,35 +50,67 @@ impl Opened {
         }
     }
 
-    fn preset_of(name: &str, design: Design) -> Self {
-        Self {
-            source: Source::Preset(name.to_owned()),
-            design: Arc::new(design),
-            warnings: Vec::new(),
-        }
+    /// Opens a file.
+    pub fn file(path: PathBuf) -> anyhow::Result<Self> {
+        Self::load(&path, &LoadOptions::default())
     }
 
-    /// Opens a file.
-    pub fn file(path: &Path) -> anyhow::Result<Self> {
-        let (design, warnings) = design::open(path)?;
-        Ok(Self {
-            source: Source::File(path.to_owned()),
+    fn load(path: &Path, options: &LoadOptions) -> anyhow::Result<Self> {
+        let Imported { design, warnings } = design::load(path, options)?;
+        Ok(Self::new(design, warnings))
+    }
+
+    fn new(mut design: Design, warnings: Vec<String>) -> Self {
+        if design.name.trim().is_empty() {
+            design.name = "untitled".to_owned();
+        }
+        Self {
+            weave: Arc::new(design.weave()),
+            ends: Arc::new(design.end_positions()),
+            picks: Arc::new(design.pick_positions()),
             design: Arc::new(design),
             warnings,
-        })
-    }
-
-    fn with_sett(mut self, args: &SettArgs) -> Self {
-        if let Some(sett) = args.sett {
-            let design = Arc::make_mut(&mut self.design);
-            design.ends_per_cm = sett.ends_per_cm as f32;
-            design.picks_per_cm = sett.picks_per_cm as f32;
         }
-        self
     }
 
     /// What the designer calls it.
     pub fn name(&self) -> &str {
         &self.design.name
+    }
+
+    /// The drawdown of one repeat.
+    pub fn weave(&self) -> &WeavePattern {
+        &self.weave
+    }
+
+    /// The yarn on top at a crossing of the design.
+    pub fn yarn_on_top(&self, end: u32, pick: u32) -> YarnId {
+        let maps = self.design.maps();
+        if self.weave.get(end, pick) {
+            maps.warp(i64::from(end), i64::from(pick))
+        } else {
+            maps.weft(i64::from(end), i64::from(pick))
+        }
+    }
+
+    /// The colour on top at a crossing of the design.
+    pub fn colour_on_top(&self, end: u32, pick: u32) -> Srgb {
+        self.design.yarn(self.yarn_on_top(end, pick)).colour
+    }
+
+    /// Which crossing of the endless cloth lies at a point, mm.
+    pub fn crossing_at(&self, [x, y]: [f32; 2]) -> (i64, i64) {
+        (
+            self.ends.locate(f64::from(x)).0,
+            self.picks.locate(f64::from(y)).0,
+        )
+    }
+
+    /// Size of one repeat of the weave, mm.
+    pub fn size_mm(&self) -> [f32; 2] {
+        [
+            self.ends.start(i64::from(self.design.ends())) as f32,
+            self.picks.start(i64::from(self.design.picks())) as f32,
+        ]
     }
 }

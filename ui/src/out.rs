@@ -82,7 +82,10 @@ impl Progress {
         let Some(Ok(mut line)) = self.0.as_ref().map(|line| line.lock()) else {
             return;
         };
-        if line.last.is_some_and(|last| last.elapsed() < PROGRESS_PERIOD) {
+        if line
+            .last
+            .is_some_and(|last| last.elapsed() < PROGRESS_PERIOD)
+        {
             return;
         }
         line.last = Some(Instant::now());

@@ -204,7 +204,13 @@ mod tests {
     fn greys_are_neutral() {
         for theme in [Theme::Dark, Theme::Light] {
             let palette = Palette::of(theme);
-            for grey in [palette.deep, palette.panel, palette.raised, palette.text, SURROUND] {
+            for grey in [
+                palette.deep,
+                palette.panel,
+                palette.raised,
+                palette.text,
+                SURROUND,
+            ] {
                 assert!(grey.r() == grey.g() && grey.g() == grey.b());
             }
         }

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use crate::stub::still::{EffectBase, EffectChoice, Light};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use pickglass::render::{Backing, PRESET_NAMES, View};
+
+use crate::stub::still::{EffectBase, EffectChoice, LightChoice};
 
 /// Threads per cm, along both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,9 +31,6 @@ pub struct Dial {
     pub name: String,
     pub value: String,
 }
-
-/// A light by name or by file.
-pub type LightArg = Light;
 
 /// Largest side of a picture.
 const LARGEST_SIDE: u32 = 32_768;
@@ -111,10 +111,33 @@ pub fn picture_path(text: &str) -> Result<PicturePath, String> {
 }
 
 /// A light's name, or the path of an environment image.
-pub fn light(text: &str) -> Result<LightArg, String> {
-    Light::parse(text).ok_or_else(|| {
-        let names: Vec<_> = Light::PRESETS.iter().map(|preset| preset.name).collect();
-        format!("expected one of {} or a file that ends in .exr", names.join(", "))
+pub fn light(text: &str) -> Result<LightChoice, String> {
+    if PRESET_NAMES.contains(&text) {
+        return Ok(LightChoice::Preset(text.to_owned()));
+    }
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("exr") => Ok(LightChoice::Environment(path)),
+        _ => Err(format!(
+            "expected one of {} or a file that ends in .exr",
+            PRESET_NAMES.join(", ")
+        )),
+    }
+}
+
+/// A view's name.
+pub fn view() -> impl TypedValueParser<Value = View> {
+    PossibleValuesParser::new(View::ALL.map(View::name))
+        .map(|name| View::from_name(&name).unwrap_or_default())
+}
+
+/// What lies behind the cloth.
+pub fn backing() -> impl TypedValueParser<Value = Backing> {
+    PossibleValuesParser::new(["none", "white", "black", "self"]).map(|name| match name.as_str() {
+        "white" => Backing::White,
+        "black" => Backing::Black,
+        "self" => Backing::Itself,
+        _ => Backing::None,
     })
 }
 
@@ -131,7 +154,8 @@ pub fn dial(text: &str) -> Result<Dial, String> {
 
 /// `auto`, `all`, `none`, then `+name` and `-name`, separated by commas.
 pub fn effects(text: &str) -> Result<EffectChoice, String> {
-    let wrong = || "expected auto, all or none, then +name or -name, separated by commas".to_owned();
+    let wrong =
+        || "expected auto, all or none, then +name or -name, separated by commas".to_owned();
     let mut choice = EffectChoice::default();
     for (place, part) in text.split(',').map(str::trim).enumerate() {
         match part {

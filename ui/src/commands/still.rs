@@ -40,9 +40,9 @@ pub fn render_to(
 ) -> anyhow::Result<StillReport> {
     let progress = Progress::new();
     let still = still::render_still(&opened.design, request, &progress.job(), &mut |pass| {
-        let error = pass
-            .error
-            .map_or_else(String::new, |error| format!(" · error {:.1} %", error * 100.0));
+        let error = pass.error.map_or_else(String::new, |error| {
+            format!(" · error {:.1} %", error * 100.0)
+        });
         progress.show(&format!("{} spp · {:.1} s{error}", pass.spp, pass.seconds));
     });
     progress.finish();
@@ -53,9 +53,9 @@ pub fn render_to(
 
 /// The picture's line for a person.
 pub fn describe(report: &StillReport, path: &Path) -> String {
-    let error = report
-        .error
-        .map_or_else(String::new, |error| format!(", error {:.2} %", error * 100.0));
+    let error = report.error.map_or_else(String::new, |error| {
+        format!(", error {:.2} %", error * 100.0)
+    });
     let wrong = match report.invalid_samples + report.majorant_violations {
         0 => String::new(),
         _ => format!(

@@ -1,5 +1,6 @@
 //! `pickglass synthesize`: assignment and edge fixing, measured, with no picture.
 
+use pickglass::synthesis::{Method, Rank, SynthesisSettings};
 use serde_json::json;
 
 use super::{note_warnings, seconds_json};
@@ -11,17 +12,25 @@ use crate::stub::synthesis;
 pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
     let opened = Opened::argument(&args.design, &args.sett)?;
     note_warnings(&opened.warnings);
-    let request = synthesis::Request {
+    let settings = SynthesisSettings {
         method: match args.method {
-            MethodArg::Naive => "naive",
-            MethodArg::Greedy => "greedy",
-            MethodArg::Dp => "dp",
+            MethodArg::Naive => Method::Naive,
+            MethodArg::Greedy => Method::Greedy,
+            MethodArg::Dp => Method::Dp,
         },
-        rank: args.rank,
+        rank: match args.rank {
+            0 => Rank::Off,
+            rank => Rank::Truncated(rank),
+        },
         seed: args.seed,
+        ..SynthesisSettings::default()
     };
     let progress = Progress::new();
-    let report = synthesis::measure(&opened.design, &request, &progress.job())?;
+    let report = synthesis::measure(
+        &opened.design,
+        &synthesis::Request { settings },
+        &progress.job(),
+    )?;
     progress.finish();
     if args.json {
         return out::say_json(&json!({

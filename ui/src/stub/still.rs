@@ -4,112 +4,32 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use clap::ValueEnum;
+use pickglass::design::Design;
 use pickglass::job::{Cancelled, Job};
+use pickglass::render::{Backing, PRESET_NAMES, View};
 
-use super::design::Design;
-
-/// Where the eye is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum View {
-    /// Straight down on the face
-    Face,
-    /// Straight down on the back
-    Back,
-    /// A few threads, filling the picture
-    Close,
-    /// From the side, as cloth on a table
-    Oblique,
-    /// Along the cloth
-    Grazing,
-}
-
-impl View {
-    /// All views, in the order of menus.
-    pub const ALL: [Self; 5] = [
-        Self::Face,
-        Self::Back,
-        Self::Close,
-        Self::Oblique,
-        Self::Grazing,
-    ];
-
-    /// Width of cloth it shows when none is asked for, mm.
-    pub fn usual_width_mm(self, design: &Design) -> f32 {
-        let pitch = design.pitch_mm()[0];
-        let repeat = pitch * design.pattern.ends() as f32;
-        match self {
-            Self::Close => pitch * 8.0,
-            _ => repeat.clamp(pitch * 24.0, pitch * 64.0),
-        }
+/// Width of cloth a view shows when none is asked for, mm.
+pub fn usual_width_mm(view: View, design: &Design) -> f32 {
+    let pitch = design.sett().end_pitch_mm();
+    match view {
+        View::Close => pitch * 8.0,
+        _ => (pitch * design.ends() as f32).clamp(pitch * 24.0, pitch * 64.0),
     }
-}
-
-/// A named light.
-#[derive(Debug, PartialEq, Eq)]
-pub struct LightPreset {
-    pub name: &'static str,
-    pub description: &'static str,
 }
 
 /// What lights the cloth.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Light {
-    Preset(&'static LightPreset),
+pub enum LightChoice {
+    /// A rig by name, one of [`PRESET_NAMES`].
+    Preset(String),
+    /// An equirectangular `.exr`.
     Environment(PathBuf),
 }
 
-impl Light {
-    pub const PRESETS: &'static [LightPreset] = &[
-        LightPreset {
-            name: "daylight",
-            description: "Sun from the upper left, with sky",
-        },
-        LightPreset {
-            name: "sun",
-            description: "Sun alone, from the upper left",
-        },
-        LightPreset {
-            name: "sun-right",
-            description: "Sun alone, a quarter turn further",
-        },
-        LightPreset {
-            name: "sky",
-            description: "An even sky, without shadows",
-        },
-    ];
-
-    /// A preset's name, or the path of an `.exr` environment.
-    pub fn parse(text: &str) -> Option<Self> {
-        if let Some(preset) = Self::PRESETS.iter().find(|preset| preset.name == text) {
-            return Some(Self::Preset(preset));
-        }
-        let path = Path::new(text);
-        path.extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
-            .then(|| Self::Environment(path.to_owned()))
-    }
-}
-
-impl Default for Light {
+impl Default for LightChoice {
     fn default() -> Self {
-        Self::Preset(&Self::PRESETS[0])
+        Self::Preset(PRESET_NAMES[0].to_owned())
     }
-}
-
-/// What lies behind the cloth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Backing {
-    /// Nothing: the picture's alpha shows the gaps
-    #[default]
-    None,
-    /// A white sheet
-    White,
-    /// A black sheet
-    Black,
-    /// The same cloth again
-    #[value(name = "self")]
-    Cloth,
 }
 
 /// Which effects to start from.
@@ -137,7 +57,7 @@ pub struct Stop {
 }
 
 /// A picture that is asked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct StillRequest {
     /// Pixels.
     pub width: u32,
@@ -147,7 +67,7 @@ pub struct StillRequest {
     pub width_mm: Option<f32>,
     /// The point of the cloth in the picture's middle, mm; `None` = the design's middle.
     pub centre_mm: Option<[f32; 2]>,
-    pub light: Light,
+    pub light: LightChoice,
     pub exposure_ev: f32,
     pub backing: Backing,
     pub effects: EffectChoice,
@@ -205,12 +125,9 @@ impl Still {
             path: path.display().to_string(),
             problem,
         };
-        let picture = image::RgbaImage::from_raw(
-            self.report.width,
-            self.report.height,
-            self.rgba.clone(),
-        )
-        .ok_or_else(|| wrong("wrong size".to_owned()))?;
+        let picture =
+            image::RgbaImage::from_raw(self.report.width, self.report.height, self.rgba.clone())
+                .ok_or_else(|| wrong("wrong size".to_owned()))?;
         let part = path.with_extension("part");
         picture
             .save_with_format(&part, image::ImageFormat::Png)
@@ -222,6 +139,7 @@ impl Still {
 /// A cloth that can be looked at: exemplars built, blocks assigned, edges fixed.
 pub struct PreparedCloth {
     design: Arc<Design>,
+    weave: pickglass::design::WeavePattern,
     seconds: Vec<(String, f64)>,
 }
 
@@ -239,6 +157,7 @@ pub fn prepare(
     }
     Ok(PreparedCloth {
         design: Arc::clone(design),
+        weave: design.weave(),
         seconds: vec![("exemplars".to_owned(), start.elapsed().as_secs_f64())],
     })
 }
@@ -325,12 +244,13 @@ fn shade_row(
     line: &mut [[f32; 4]],
 ) {
     let design = &cloth.design;
-    let pitch = design.pitch_mm();
+    let pitch = [design.sett().end_pitch_mm(), design.sett().pick_pitch_mm()];
     let width_mm = request
         .width_mm
-        .unwrap_or_else(|| request.view.usual_width_mm(design));
+        .unwrap_or_else(|| usual_width_mm(request.view, design));
     let scale = width_mm / request.width as f32;
-    let centre = request.centre_mm.unwrap_or_else(|| design.middle_mm());
+    let centre = request.centre_mm.unwrap_or_default();
+    let sign = if request.view.turns_over() { -1.0 } else { 1.0 };
     for (column, sum) in line.iter_mut().enumerate() {
         let mut hash = (column as u32)
             .wrapping_mul(0x9E37_79B9)
@@ -340,12 +260,17 @@ fn shade_row(
         hash = hash.wrapping_mul(0x2C1B_3C6D);
         hash ^= hash >> 12;
         let noise = (hash & 0xffff) as f32 / 65536.0;
-        let x = centre[0] + (column as f32 + noise - request.width as f32 / 2.0) * scale;
+        let x = centre[0] + sign * (column as f32 + noise - request.width as f32 / 2.0) * scale;
         let y = centre[1] - (row as f32 + 0.5 - request.height as f32 / 2.0) * scale;
         let (u, v) = (x / pitch[0], y / pitch[1]);
         let (end, pick) = (u.floor() as i64, v.floor() as i64);
-        let up = design.warp_up(end, pick) != (request.view == View::Back);
-        let colour = design.yarns[usize::from(design.yarn_at(end, pick, up).0)].colour;
+        let up = cloth.weave.get_wrapped(end, pick) != request.view.turns_over();
+        let yarn = if up {
+            design.maps().warp(end, pick)
+        } else {
+            design.maps().weft(end, pick)
+        };
+        let colour = design.yarn(yarn).colour;
         let across = if up { u - u.floor() } else { v - v.floor() };
         let round = (1.0 - (2.0 * across - 1.0).powi(2)).max(0.0).sqrt();
         let shade = (0.25 + 0.75 * round) * (0.7 + 0.6 * noise);

@@ -1,13 +1,12 @@
 //! Assignment and edge fixing, measured.
 
+use pickglass::design::Design;
 use pickglass::job::{Cancelled, Job};
+use pickglass::synthesis::SynthesisSettings;
 
-use super::design::Design;
-
+#[derive(Debug, Clone, Copy)]
 pub struct Request {
-    pub method: &'static str,
-    pub rank: u32,
-    pub seed: u64,
+    pub settings: SynthesisSettings,
 }
 
 #[derive(Debug, Default)]
@@ -29,7 +28,7 @@ pub fn measure(design: &Design, _request: &Request, job: &Job) -> Result<Report,
     job.report("assigning blocks", 0.5);
     job.check()?;
     Ok(Report {
-        crossings: u64::from(design.pattern.ends()) * u64::from(design.pattern.picks()),
+        crossings: u64::from(design.ends()) * u64::from(design.picks()),
         ..Report::default()
     })
 }

@@ -1,8 +1,7 @@
 //! The viewer: its state, its layout and what its commands do.
 
-use std::path::PathBuf;
-
-use egui::{CentralPanel, Frame, Panel, Rect, RichText, ViewportCommand, pos2, vec2};
+use egui::{CentralPanel, Frame, Id, Panel, Rect, RichText, ViewportCommand, pos2, vec2};
+use pickglass::render::View;
 
 use super::cloth_pane::ClothPane;
 use super::export::{Export, Exported};
@@ -16,7 +15,7 @@ use super::worker::{ClothWorker, Phase, PreviewRequest};
 use crate::command_table::Command;
 use crate::opened::Opened;
 use crate::stub::design::PRESETS;
-use crate::stub::still::{Backing, EffectChoice, Light, StillRequest, Stop, View};
+use crate::stub::still::{LightChoice, StillRequest, usual_width_mm};
 use crate::tokens::{self, Palette};
 
 /// One step of the zoom keys.
@@ -26,31 +25,15 @@ const ACTUAL_SIZE: f32 = 25.4 / 96.0;
 /// A preview has at most this many pixels; beyond, it is drawn smaller and stretched.
 const MOST_PIXELS: f32 = 4.0e6;
 
-/// The request of a picture with nothing chosen.
-pub fn usual_request() -> StillRequest {
-    StillRequest {
-        width: 1,
-        height: 1,
-        view: View::Face,
-        width_mm: None,
-        centre_mm: None,
-        light: Light::default(),
-        exposure_ev: 0.0,
-        backing: Backing::None,
-        effects: EffectChoice::default(),
-        dials: Vec::new(),
-        seed: 0,
-        stop: Stop::default(),
-    }
-}
-
 /// The window's state.
 pub struct Viewer {
     opened: Option<Opened>,
     view: View,
-    light: Light,
+    light: LightChoice,
     /// `None` until the pane's size is known, or when the view is to be set anew.
     cloth_view: Option<ClothView>,
+    /// Whether a view set anew shows the whole repeat, or the view's usual width.
+    fit: bool,
     pane: ClothPane,
     /// What was last asked of the worker.
     asked: Option<StillRequest>,
@@ -75,8 +58,9 @@ impl Viewer {
         let mut viewer = Self {
             opened: None,
             view: View::Face,
-            light: Light::default(),
+            light: LightChoice::default(),
             cloth_view: None,
+            fit: false,
             pane: ClothPane::default(),
             asked: None,
             generation: 0,
@@ -105,7 +89,8 @@ impl Viewer {
 
     fn take_design(&mut self, ctx: &egui::Context, opened: Opened) {
         for warning in &opened.warnings {
-            self.toasts.say(Grade::Warning, warning.clone(), "The design was opened.");
+            self.toasts
+                .say(Grade::Warning, warning.clone(), "The design was opened.");
         }
         let title = format!("{} — Pickglass", opened.name());
         ctx.send_viewport_cmd(ViewportCommand::Title(title));
@@ -134,10 +119,18 @@ impl Viewer {
                 self.toasts.say(Grade::Done, text, kept);
             }
             Some(Exported::Cancelled) => {
-                self.toasts.say(Grade::Done, "The export was cancelled.", "No file was written.");
+                self.toasts.say(
+                    Grade::Done,
+                    "The export was cancelled.",
+                    "No file was written.",
+                );
             }
             Some(Exported::Failed(error)) => {
-                self.toasts.say(Grade::Error, error, "An earlier file of that name is unchanged.");
+                self.toasts.say(
+                    Grade::Error,
+                    error,
+                    "An earlier file of that name is unchanged.",
+                );
             }
             None => {}
         }
@@ -149,7 +142,11 @@ impl Viewer {
         if let Phase::Failed(error) = self.worker.phase()
             && self.reported_failure.as_ref() != Some(&error)
         {
-            self.toasts.say(Grade::Error, error.clone(), "The last picture is still shown.");
+            self.toasts.say(
+                Grade::Error,
+                error.clone(),
+                "The last picture is still shown.",
+            );
             self.reported_failure = Some(error);
         }
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
@@ -180,11 +177,15 @@ impl Viewer {
             }
             Command::Look(view) => {
                 self.view = view;
+                self.fit = false;
                 self.cloth_view = None;
             }
             Command::Fit => {
-                self.view = if self.view == View::Back { View::Back } else { View::Face };
-                self.refit();
+                if !self.view.turns_over() {
+                    self.view = View::Face;
+                }
+                self.fit = true;
+                self.cloth_view = None;
             }
             Command::ActualSize => self.rescale(|view| view.mm_per_point = ACTUAL_SIZE),
             Command::ZoomIn => self.zoom(ZOOM_STEP),
@@ -213,15 +214,14 @@ impl Viewer {
         });
     }
 
-    fn refit(&mut self) {
-        self.cloth_view = None;
-    }
-
     fn initial_view(&self, pane: Rect, opened: &Opened) -> ClothView {
-        let design = &opened.design;
-        let middle = design.middle_mm();
-        let mut view = ClothView::across(pane, middle, self.view.usual_width_mm(design));
-        view.mirrored = self.view == View::Back;
+        let middle = opened.size_mm().map(|mm| mm / 2.0);
+        let mut view = if self.fit {
+            ClothView::fitting(pane, middle, opened.size_mm())
+        } else {
+            ClothView::across(pane, middle, usual_width_mm(self.view, &opened.design))
+        };
+        view.mirrored = self.view.turns_over();
         view
     }
 
@@ -231,7 +231,9 @@ impl Viewer {
             return;
         };
         let pixels = pane.size() * density;
-        let shrink = (MOST_PIXELS / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0);
+        let shrink = (MOST_PIXELS / (pixels.x * pixels.y).max(1.0))
+            .sqrt()
+            .min(1.0);
         let still = StillRequest {
             width: ((pixels.x * shrink) as u32).max(1),
             height: ((pixels.y * shrink) as u32).max(1),
@@ -239,7 +241,7 @@ impl Viewer {
             width_mm: Some(view.width_mm(pane)),
             centre_mm: Some(view.centre_mm),
             light: self.light.clone(),
-            ..usual_request()
+            ..StillRequest::default()
         };
         if self.paused || self.asked.as_ref() == Some(&still) {
             return;
@@ -255,7 +257,11 @@ impl Viewer {
     }
 
     fn menu_ui(&mut self, ui: &mut egui::Ui) {
-        let title = self.opened.as_ref().map_or("", |opened| opened.name()).to_owned();
+        let title = self
+            .opened
+            .as_ref()
+            .map_or("", |opened| opened.name())
+            .to_owned();
         let chosen = Chosen {
             view: self.view,
             light: &self.light,
@@ -268,7 +274,7 @@ impl Viewer {
         match choice {
             Some(Choice::Command(command)) => self.obey(&ctx, command),
             Some(Choice::Preset(name)) => self.files.open_preset(&ctx, name),
-            Some(Choice::Light(preset)) => self.light = Light::Preset(preset),
+            Some(Choice::Light(preset)) => self.light = LightChoice::Preset(preset.to_owned()),
             None => {}
         }
     }
@@ -302,7 +308,7 @@ impl Viewer {
         };
         let shown = self.shown_in_repeats(opened);
         if let Some(at) = self.strip.show(ui, opened, shown) {
-            let size = repeat_mm(opened);
+            let size = opened.size_mm();
             let centre = [at[0] * size[0], at[1] * size[1]];
             self.rescale(|view| view.centre_mm = centre);
         }
@@ -312,7 +318,7 @@ impl Viewer {
     fn shown_in_repeats(&self, opened: &Opened) -> Option<Rect> {
         let still = self.asked.as_ref()?;
         let (centre, width) = (still.centre_mm?, still.width_mm?);
-        let size = repeat_mm(opened);
+        let size = opened.size_mm();
         let height = width * still.height as f32 / still.width.max(1) as f32;
         let home = |mm: f32, repeat: f32| (mm / repeat).rem_euclid(1.0);
         let rect = Rect::from_center_size(
@@ -337,9 +343,10 @@ impl Viewer {
         if self.pane.shown.is_none() {
             self.busy_ui(ui, pane);
         }
-        let at = view.to_cloth(pane, response.hover_pos()?);
-        let pitch = opened.design.pitch_mm();
-        Some(((at[0] / pitch[0]).floor() as i64, (at[1] / pitch[1]).floor() as i64))
+        // Only the straight views show where a crossing lies.
+        let straight = matches!(self.view, View::Face | View::Back);
+        let at = response.hover_pos().filter(|_| straight)?;
+        Some(opened.crossing_at(view.to_cloth(pane, at)))
     }
 
     /// In the middle of an empty pane: what is being done, how far, cancel.
@@ -408,19 +415,10 @@ impl Viewer {
     }
 }
 
-fn repeat_mm(opened: &Opened) -> [f32; 2] {
-    let design = &opened.design;
-    let pitch = design.pitch_mm();
-    [
-        pitch[0] * design.pattern.ends() as f32,
-        pitch[1] * design.pattern.picks() as f32,
-    ]
-}
-
 /// A plate in the middle of the pane.
 fn plate(ui: &mut egui::Ui, pane: Rect, content: impl FnOnce(&mut egui::Ui)) {
     let palette = Palette::current(ui);
-    egui::Area::new(egui::Id::new("plate"))
+    egui::Area::new(Id::unique("plate"))
         .order(egui::Order::Middle)
         .pivot(egui::Align2::CENTER_CENTER)
         .fixed_pos(pane.center())
@@ -442,10 +440,15 @@ fn hovered_ui(ctx: &egui::Context, pane: Rect) {
     if !hovering {
         return;
     }
-    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("drop"));
+    let layer = egui::LayerId::new(egui::Order::Foreground, Id::unique("drop"));
     let painter = ctx.layer_painter(layer);
     let stroke = egui::Stroke::new(3.0, tokens::ACCENT);
-    painter.rect_stroke(pane.shrink(2.0), tokens::RADIUS, stroke, egui::StrokeKind::Inside);
+    painter.rect_stroke(
+        pane.shrink(2.0),
+        tokens::RADIUS,
+        stroke,
+        egui::StrokeKind::Inside,
+    );
 }
 
 impl eframe::App for Viewer {
@@ -456,7 +459,7 @@ impl eframe::App for Viewer {
             self.obey(&ctx, command);
         }
         Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
-        let hover = ctx.data(|data| data.get_temp::<Option<(i64, i64)>>(egui::Id::new("crossing")));
+        let hover = ctx.data(|data| data.get_temp::<Option<(i64, i64)>>(Id::unique("crossing")));
         Panel::bottom("status")
             .exact_size(7.0 * tokens::GRID)
             .show(ui, |ui| self.status_ui(ui, hover.flatten()));
@@ -477,7 +480,7 @@ impl eframe::App for Viewer {
                 }
             })
             .inner;
-        ctx.data_mut(|data| data.insert_temp(egui::Id::new("crossing"), crossing));
+        ctx.data_mut(|data| data.insert_temp(Id::unique("crossing"), crossing));
         hovered_ui(&ctx, pane);
         self.toasts.show(&ctx, pane.right_bottom());
         self.files.show(&ctx);
@@ -486,13 +489,5 @@ impl eframe::App for Viewer {
             self.show_shortcuts = menu::shortcuts_ui(&ctx);
         }
         self.count_frame(&ctx);
-    }
-}
-
-/// The path of a file, for tests.
-#[cfg(test)]
-impl Viewer {
-    pub fn open_path(&mut self, ctx: &egui::Context, path: PathBuf) {
-        self.files.open(ctx, path);
     }
 }

@@ -1,7 +1,9 @@
 //! The pane of the cloth: the newest picture where it belongs, however the eye moved
 //! since it was asked for.
 
-use egui::{Color32, CursorIcon, Key, Rect, Response, Sense, Stroke, TextureHandle, TextureOptions, vec2};
+use egui::{
+    Color32, CursorIcon, Key, Rect, Response, Sense, Stroke, TextureHandle, TextureOptions, vec2,
+};
 
 use super::view::{ClothView, scale_bar};
 use super::worker::Picture;
@@ -53,9 +55,7 @@ impl ClothPane {
     pub fn show(&self, ui: &mut egui::Ui, view: &mut ClothView, description: &str) -> Response {
         let pane = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(pane, Sense::click_and_drag());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::WidgetType::Image, true, description)
-        });
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, description));
         move_view(ui, &response, pane, view);
         let painter = ui.painter_at(pane);
         painter.rect_filled(pane, 0.0, tokens::SURROUND);
@@ -122,14 +122,21 @@ fn scale_bar_ui(ui: &egui::Ui, pane: Rect, view: &ClothView) {
     let painter = ui.painter_at(pane);
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = painter.layout_no_wrap(caption, font, palette.text);
-    let inner = vec2(length.max(text.size().x), text.size().y + 2.0 * tokens::GRID);
+    let inner = vec2(
+        length.max(text.size().x),
+        text.size().y + 2.0 * tokens::GRID,
+    );
     let plate = Rect::from_min_size(
         pane.left_bottom() + vec2(tokens::PAD, -tokens::PAD - inner.y - 2.0 * tokens::GRID),
         inner + vec2(2.0 * tokens::GAP, 2.0 * tokens::GRID),
     );
     painter.rect_filled(plate, tokens::RADIUS, palette.raised);
     let left = plate.left() + tokens::GAP;
-    painter.galley(egui::pos2(left, plate.top() + tokens::GRID), text, palette.text);
+    painter.galley(
+        egui::pos2(left, plate.top() + tokens::GRID),
+        text,
+        palette.text,
+    );
     let base = plate.bottom() - tokens::GAP;
     let stroke = Stroke::new(1.5, palette.text);
     painter.hline(left..=left + length, base, stroke);

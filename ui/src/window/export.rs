@@ -109,7 +109,7 @@ impl Export {
             return;
         };
         let mut choice = Choice::None;
-        let modal = Modal::new(Id::new("export")).show(ctx, |ui| choice = form_ui(ui, form));
+        let modal = Modal::new(Id::unique("export")).show(ctx, |ui| choice = form_ui(ui, form));
         if modal.should_close() {
             choice = Choice::Close;
         }
@@ -193,28 +193,38 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
     ui.label(RichText::new("Export still").text_style(egui::TextStyle::Heading));
     ui.label(RichText::new("The cloth as it is shown now.").color(palette.quiet));
     ui.add_space(tokens::GAP);
-    egui::Grid::new("export form").num_columns(2).show(ui, |ui| {
-        let label = ui.label("Width");
-        ui.add(DragValue::new(&mut form.width).range(16..=16_384).suffix(" px"))
+    egui::Grid::new("export form")
+        .num_columns(2)
+        .show(ui, |ui| {
+            let label = ui.label("Width");
+            ui.add(
+                DragValue::new(&mut form.width)
+                    .range(16..=16_384)
+                    .suffix(" px"),
+            )
             .labelled_by(label.id);
-        ui.end_row();
-        ui.label("Height");
-        ui.label(format!("{} px", scaled_height(&form.still, form.width)));
-        ui.end_row();
-        let label = ui.label("Refine for");
-        ui.add(DragValue::new(&mut form.seconds).range(0.1..=36_000.0).suffix(" s"))
+            ui.end_row();
+            ui.label("Height");
+            ui.label(format!("{} px", scaled_height(&form.still, form.width)));
+            ui.end_row();
+            let label = ui.label("Refine for");
+            ui.add(
+                DragValue::new(&mut form.seconds)
+                    .range(0.1..=36_000.0)
+                    .suffix(" s"),
+            )
             .labelled_by(label.id);
-        ui.end_row();
-        let label = ui.label("File");
-        ui.horizontal(|ui| {
-            ui.add(egui::TextEdit::singleline(&mut form.path))
-                .labelled_by(label.id);
-            if ui.button("Browse…").clicked() {
-                choice = Choice::Browse;
-            }
+            ui.end_row();
+            let label = ui.label("File");
+            ui.horizontal(|ui| {
+                ui.add(egui::TextEdit::singleline(&mut form.path))
+                    .labelled_by(label.id);
+                if ui.button("Browse…").clicked() {
+                    choice = Choice::Browse;
+                }
+            });
+            ui.end_row();
         });
-        ui.end_row();
-    });
     if let Some(wrong) = &form.wrong {
         ui.label(RichText::new(format!("⊗ Error: {wrong}")).color(palette.error));
     }

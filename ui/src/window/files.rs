@@ -71,7 +71,7 @@ impl Files {
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
-        self.read(ctx, &name.to_string_lossy(), move || Opened::file(&path));
+        self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
     }
 
     /// The file that is being read, if any.
@@ -128,7 +128,7 @@ impl Files {
             return;
         };
         let (mut open, mut close) = (false, false);
-        let modal = Modal::new(Id::new("typed path")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("typed path")).show(ctx, |ui| {
             ui.set_width(tokens::TOAST_WIDTH);
             let quiet = Palette::current(ui).quiet;
             ui.label(RichText::new("Open by path").text_style(egui::TextStyle::Heading));

@@ -1,23 +1,24 @@
 //! The menu bar and the help sheet, both made from the command table.
 
 use egui::{Button, Grid, Id, MenuBar, Modal, RichText};
+use pickglass::render::{PRESET_NAMES, View};
 
 use crate::command_table::{Command, Menu, TABLE};
 use crate::stub::design::PRESETS;
-use crate::stub::still::{Light, LightPreset, View};
+use crate::stub::still::LightChoice;
 use crate::tokens::{self, Palette};
 
 /// What was chosen.
 pub enum Choice {
     Command(Command),
     Preset(&'static str),
-    Light(&'static LightPreset),
+    Light(&'static str),
 }
 
 /// What the menus show as chosen.
 pub struct Chosen<'s> {
     pub view: View,
-    pub light: &'s Light,
+    pub light: &'s LightChoice,
     pub strip: bool,
     pub paused: bool,
     pub has_design: bool,
@@ -27,13 +28,19 @@ pub struct Chosen<'s> {
 pub fn show(ui: &mut egui::Ui, chosen: &Chosen<'_>, title: &str) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
-        for (menu, label) in [(Menu::File, "File"), (Menu::View, "View"), (Menu::Help, "Help")] {
+        for (menu, label) in [
+            (Menu::File, "File"),
+            (Menu::View, "View"),
+            (Menu::Help, "Help"),
+        ] {
             ui.menu_button(label, |ui| {
                 for row in TABLE.iter().filter(|row| row.menu == menu) {
                     if row.command == Command::Quit || row.command == Command::Fit {
                         ui.separator();
                     }
-                    choice = row_ui(ui, row, chosen).map(Choice::Command).or(choice.take());
+                    choice = row_ui(ui, row, chosen)
+                        .map(Choice::Command)
+                        .or(choice.take());
                     if row.command == Command::OpenPath {
                         choice = presets_ui(ui).or(choice.take());
                     }
@@ -71,7 +78,10 @@ fn row_ui(
     if let Some(shortcut) = &row.shortcut {
         button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
     }
-    let clicked = ui.add_enabled(enabled, button).on_hover_text(row.tip).clicked();
+    let clicked = ui
+        .add_enabled(enabled, button)
+        .on_hover_text(row.tip)
+        .clicked();
     if clicked {
         ui.close();
     }
@@ -91,13 +101,12 @@ fn presets_ui(ui: &mut egui::Ui) -> Option<Choice> {
     choice
 }
 
-fn lights_ui(ui: &mut egui::Ui, light: &Light) -> Option<Choice> {
+fn lights_ui(ui: &mut egui::Ui, light: &LightChoice) -> Option<Choice> {
     let mut choice = None;
     ui.menu_button("Light", |ui| {
-        for preset in Light::PRESETS {
-            let on = matches!(light, Light::Preset(current) if *current == preset);
-            let button = Button::selectable(on, preset.name);
-            if ui.add(button).on_hover_text(preset.description).clicked() {
+        for preset in PRESET_NAMES {
+            let on = matches!(light, LightChoice::Preset(current) if current == preset);
+            if ui.add(Button::selectable(on, preset)).clicked() {
                 choice = Some(Choice::Light(preset));
                 ui.close();
             }
@@ -123,26 +132,31 @@ pub fn pressed(ctx: &egui::Context) -> Option<Command> {
 /// Shows the table of shortcuts; false when it was closed.
 pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
     let mut open = true;
-    let modal = Modal::new(Id::new("shortcuts")).show(ctx, |ui| {
+    let modal = Modal::new(Id::unique("shortcuts")).show(ctx, |ui| {
         ui.label(RichText::new("Keyboard shortcuts").text_style(tokens::title()));
         ui.add_space(tokens::GAP);
-        Grid::new("shortcut table").num_columns(2).spacing([tokens::PAD * 2.0, tokens::GRID]).show(ui, |ui| {
-            for row in TABLE {
-                let Some(shortcut) = row.shortcut else { continue };
-                ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).monospace());
-                ui.label(row.tip);
-                ui.end_row();
-            }
-            for (gesture, tip) in [
-                ("Drag", "Move the cloth"),
-                ("Wheel", "Zoom at the pointer"),
-                ("Arrow keys", "Move the cloth, once it was clicked"),
-            ] {
-                ui.label(RichText::new(gesture).monospace());
-                ui.label(tip);
-                ui.end_row();
-            }
-        });
+        Grid::new("shortcut table")
+            .num_columns(2)
+            .spacing([tokens::PAD * 2.0, tokens::GRID])
+            .show(ui, |ui| {
+                for row in TABLE {
+                    let Some(shortcut) = row.shortcut else {
+                        continue;
+                    };
+                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).monospace());
+                    ui.label(row.tip);
+                    ui.end_row();
+                }
+                for (gesture, tip) in [
+                    ("Drag", "Move the cloth"),
+                    ("Wheel", "Zoom at the pointer"),
+                    ("Arrow keys", "Move the cloth, once it was clicked"),
+                ] {
+                    ui.label(RichText::new(gesture).monospace());
+                    ui.label(tip);
+                    ui.end_row();
+                }
+            });
         ui.add_space(tokens::GAP);
         if ui.button("Close").clicked() {
             open = false;

@@ -32,7 +32,7 @@ pub fn show(ui: &mut egui::Ui, status: &Status<'_>) -> Option<Cancel> {
     ui.horizontal_centered(|ui| {
         if let Some(opened) = status.opened {
             let design = &opened.design;
-            let (ends, picks) = (design.pattern.ends(), design.pattern.picks());
+            let (ends, picks) = (design.ends(), design.picks());
             ui.label(format!("{} · {ends} ends × {picks} picks", opened.name()));
         }
         if let Some((end, pick)) = status.crossing {
@@ -81,9 +81,9 @@ fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
 }
 
 fn quality(shown: &Shown, status: &Status<'_>) -> String {
-    let error = shown
-        .error
-        .map_or_else(String::new, |error| format!(" · error {:.1} %", error * 100.0));
+    let error = shown.error.map_or_else(String::new, |error| {
+        format!(" · error {:.1} %", error * 100.0)
+    });
     let state = match status.phase {
         _ if status.paused => " · paused",
         Phase::Stopped => " · stopped",

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Rect, RichText, Sense, Stroke, TextureHandle, TextureOptions, vec2};
-use pickglass::design::{Family, Srgb};
+use egui::{
+    Color32, ColorImage, Rect, RichText, Sense, Stroke, TextureHandle, TextureOptions, vec2,
+};
+use pickglass::design::{Design, Srgb, YarnId, YarnMap};
 
 use crate::opened::Opened;
-use crate::stub::design::Design;
 use crate::tokens::{self, Palette};
 
 /// Grid lines are drawn between cells of at least this many pixels.
@@ -41,12 +42,17 @@ struct Drawdown {
 impl Strip {
     /// Shows the strip; returns the point of the design, in repeats from its lower left
     /// corner, that was clicked.
-    pub fn show(&mut self, ui: &mut egui::Ui, opened: &Opened, shown: Option<Rect>) -> Option<[f32; 2]> {
+    pub fn show(
+        &mut self,
+        ui: &mut egui::Ui,
+        opened: &Opened,
+        shown: Option<Rect>,
+    ) -> Option<[f32; 2]> {
         let palette = Palette::current(ui);
         ui.add_space(tokens::GAP);
         ui.label(RichText::new(opened.name()).text_style(egui::TextStyle::Heading));
         let design = &opened.design;
-        let (ends, picks) = (design.pattern.ends(), design.pattern.picks());
+        let (ends, picks) = (design.ends(), design.picks());
         ui.label(RichText::new(format!("{ends} ends × {picks} picks")).color(palette.quiet));
         ui.add_space(tokens::GAP);
         let clicked = self.drawdown_ui(ui, opened, shown);
@@ -56,7 +62,12 @@ impl Strip {
         clicked
     }
 
-    fn drawdown_ui(&mut self, ui: &mut egui::Ui, opened: &Opened, shown: Option<Rect>) -> Option<[f32; 2]> {
+    fn drawdown_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        opened: &Opened,
+        shown: Option<Rect>,
+    ) -> Option<[f32; 2]> {
         let density = ui.ctx().pixels_per_point();
         let room_points = vec2(ui.available_width(), ui.available_height() * LARGEST_SHARE);
         let room = [
@@ -68,12 +79,10 @@ impl Strip {
             .as_ref()
             .is_some_and(|made| Arc::ptr_eq(&made.design, &opened.design) && made.room == room);
         if !fresh {
-            let drawdown = draw(&opened.design, room);
-            let texture = ui.ctx().load_texture(
-                "drawdown",
-                drawdown.image.clone(),
-                TextureOptions::NEAREST,
-            );
+            let drawdown = draw(opened, room);
+            let texture =
+                ui.ctx()
+                    .load_texture("drawdown", drawdown.image.clone(), TextureOptions::NEAREST);
             self.made = Some(Made {
                 design: Arc::clone(&opened.design),
                 room,
@@ -99,18 +108,22 @@ impl Strip {
         }
         let name = opened.name().to_owned();
         response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::WidgetType::Image, true, format!("Drawdown of {name}"))
+            egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Drawdown of {name}"))
         });
         if made.drawdown.crossings_a_pixel > 1 {
             let step = made.drawdown.crossings_a_pixel;
             ui.label(
-                RichText::new(format!("Larger than the strip: a pixel is {step} × {step} crossings"))
-                    .small()
-                    .color(Palette::current(ui).quiet),
+                RichText::new(format!(
+                    "Larger than the strip: a pixel is {step} × {step} crossings"
+                ))
+                .small()
+                .color(Palette::current(ui).quiet),
             );
         }
         let at = response
-            .on_hover_text("One repeat; warp or weft on top at every crossing. Click to look there.")
+            .on_hover_text(
+                "One repeat; warp or weft on top at every crossing. Click to look there.",
+            )
             .interact_pointer_pos()
             .filter(|_| ui.input(|input| input.pointer.primary_clicked()))?;
         let offset = (at - rect.left_bottom()) / rect.size();
@@ -125,12 +138,14 @@ fn snapped(place: Rect, size: egui::Vec2, density: f32) -> Rect {
 }
 
 /// Draws one repeat into at most `room` pixels.
-fn draw(design: &Design, room: [usize; 2]) -> Drawdown {
-    let (ends, picks) = (design.pattern.ends(), design.pattern.picks());
-    let cell = (room[0] / ends as usize).min(room[1] / picks as usize).min(LARGEST_CELL);
+fn draw(opened: &Opened, room: [usize; 2]) -> Drawdown {
+    let (ends, picks) = (opened.weave().ends(), opened.weave().picks());
+    let cell = (room[0] / ends as usize)
+        .min(room[1] / picks as usize)
+        .min(LARGEST_CELL);
     if cell >= 1 {
         return Drawdown {
-            image: draw_cells(design, cell),
+            image: draw_cells(opened, cell),
             crossings_a_pixel: 1,
         };
     }
@@ -138,35 +153,25 @@ fn draw(design: &Design, room: [usize; 2]) -> Drawdown {
         .div_ceil(room[0])
         .max((picks as usize).div_ceil(room[1])) as u32;
     Drawdown {
-        image: draw_means(design, step),
+        image: draw_means(opened, step),
         crossings_a_pixel: step,
     }
 }
 
-fn colour_on_top(design: &Design, end: u32, pick: u32) -> Srgb {
-    let (end, pick) = (i64::from(end), i64::from(pick));
-    let up = design.warp_up(end, pick);
-    let yarn = design.yarn_at(end, pick, up);
-    design
-        .yarns
-        .get(usize::from(yarn.0))
-        .map_or(Srgb(128, 128, 128), |yarn| yarn.colour)
-}
-
 /// Each crossing as a square of `cell` pixels. The sides along which the yarn on top
 /// lies are shaded, so that equal colours can be told apart.
-fn draw_cells(design: &Design, cell: usize) -> ColorImage {
-    let (ends, picks) = (design.pattern.ends(), design.pattern.picks());
+fn draw_cells(opened: &Opened, cell: usize) -> ColorImage {
+    let (ends, picks) = (opened.weave().ends(), opened.weave().picks());
     let (width, height) = (ends as usize * cell, picks as usize * cell);
     let mut image = ColorImage::filled([width, height], Color32::BLACK);
     for pick in 0..picks {
         let top = (picks - 1 - pick) as usize * cell;
         for end in 0..ends {
             let left = end as usize * cell;
-            let Srgb(red, green, blue) = colour_on_top(design, end, pick);
+            let Srgb(red, green, blue) = opened.colour_on_top(end, pick);
             let colour = tokens::yarn_colour(red, green, blue);
             let shaded = colour.lerp_to_gamma(Color32::BLACK, 0.28);
-            let up = design.warp_up(i64::from(end), i64::from(pick));
+            let up = opened.weave().get(end, pick);
             for y in 0..cell {
                 for x in 0..cell {
                     let across = if up { x } else { y };
@@ -194,8 +199,8 @@ fn grid_line(on_end: bool, end: u32, on_pick: bool, pick: u32) -> Color32 {
 }
 
 /// Each pixel as the mean of `step` × `step` crossings, in linear light.
-fn draw_means(design: &Design, step: u32) -> ColorImage {
-    let (ends, picks) = (design.pattern.ends(), design.pattern.picks());
+fn draw_means(opened: &Opened, step: u32) -> ColorImage {
+    let (ends, picks) = (opened.weave().ends(), opened.weave().picks());
     let size = [ends.div_ceil(step) as usize, picks.div_ceil(step) as usize];
     let mut image = ColorImage::filled(size, Color32::BLACK);
     for y in 0..size[1] {
@@ -205,7 +210,7 @@ fn draw_means(design: &Design, step: u32) -> ColorImage {
             let mut count = 0.0;
             for pick in bottom..(bottom + step).min(picks) {
                 for end in left..(left + step).min(ends) {
-                    let Srgb(red, green, blue) = colour_on_top(design, end, pick);
+                    let Srgb(red, green, blue) = opened.colour_on_top(end, pick);
                     sum = sum + egui::Rgba::from(tokens::yarn_colour(red, green, blue));
                     count += 1.0;
                 }
@@ -218,11 +223,7 @@ fn draw_means(design: &Design, step: u32) -> ColorImage {
 
 fn yarns_ui(ui: &mut egui::Ui, design: &Design) {
     let palette = Palette::current(ui);
-    if design.yarns.is_empty() {
-        ui.label(RichText::new("This design has no yarns.").color(palette.quiet));
-        return;
-    }
-    for (index, yarn) in design.yarns.iter().enumerate() {
+    for (index, yarn) in design.yarns().iter().enumerate() {
         ui.horizontal(|ui| {
             let side = 6.0 * tokens::GRID;
             let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
@@ -240,7 +241,7 @@ fn yarns_ui(ui: &mut egui::Ui, design: &Design) {
                 ui.label(&yarn.name);
                 let roles = roles(design, index);
                 ui.label(
-                    RichText::new(format!("{} · {roles}", family_name(yarn.family)))
+                    RichText::new(format!("{} · {roles}", yarn.family.name()))
                         .small()
                         .color(palette.quiet),
                 );
@@ -249,18 +250,9 @@ fn yarns_ui(ui: &mut egui::Ui, design: &Design) {
     }
 }
 
-fn family_name(family: Family) -> &'static str {
-    match family {
-        Family::Cotton => "cotton",
-        Family::Silk => "silk",
-        Family::Wool => "wool",
-        Family::Linen => "linen",
-    }
-}
-
 fn roles(design: &Design, yarn: usize) -> &'static str {
-    let used = |order: &[pickglass::design::YarnId]| order.iter().any(|id| usize::from(id.0) == yarn);
-    match (used(&design.warp), used(&design.weft)) {
+    let maps = design.maps();
+    match (uses(&maps.warp, yarn), uses(&maps.weft, yarn)) {
         (true, true) => "warp and weft",
         (true, false) => "warp",
         (false, true) => "weft",
@@ -268,21 +260,30 @@ fn roles(design: &Design, yarn: usize) -> &'static str {
     }
 }
 
+fn uses(map: &YarnMap, yarn: usize) -> bool {
+    let is = |id: YarnId| usize::from(id.0) == yarn;
+    match map {
+        YarnMap::Order(order) => order.iter().copied().any(is),
+        YarnMap::Crossings(grid) => {
+            (0..grid.picks()).any(|pick| (0..grid.ends()).any(|end| is(grid.get(end, pick))))
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stub::design;
 
     #[test]
     fn the_drawdown_shows_the_yarn_on_top_with_pick_0_below() {
-        let design = design::preset("twill").expect("a preset");
+        let opened = Opened::preset("twill").expect("a preset");
         let cell = 5;
-        let image = draw_cells(&design, cell);
-        for pick in 0..design.pattern.picks() {
-            for end in 0..design.pattern.ends() {
-                let Srgb(red, green, blue) = colour_on_top(&design, end, pick);
+        let image = draw_cells(&opened, cell);
+        for pick in 0..opened.weave().picks() {
+            for end in 0..opened.weave().ends() {
+                let Srgb(red, green, blue) = opened.colour_on_top(end, pick);
                 let x = end as usize * cell + cell / 2;
-                let y = (design.pattern.picks() - 1 - pick) as usize * cell + cell / 2;
+                let y = (opened.weave().picks() - 1 - pick) as usize * cell + cell / 2;
                 assert_eq!(image[(x, y)], tokens::yarn_colour(red, green, blue));
             }
         }
@@ -290,8 +291,11 @@ mod tests {
 
     #[test]
     fn a_design_larger_than_the_room_is_averaged() {
-        let design = design::preset("plain").expect("a preset");
-        let drawdown = draw(&design, [1, 1]);
-        assert_eq!((drawdown.image.size, drawdown.crossings_a_pixel), ([1, 1], 2));
+        let opened = Opened::preset("plain").expect("a preset");
+        let drawdown = draw(&opened, [1, 1]);
+        assert_eq!(
+            (drawdown.image.size, drawdown.crossings_a_pixel),
+            ([1, 1], 2)
+        );
     }
 }

@@ -49,14 +49,15 @@ impl Toasts {
     /// Shows the messages above `bottom_right`.
     pub fn show(&mut self, ctx: &egui::Context, bottom_right: egui::Pos2) {
         let now = Instant::now();
-        self.0.retain(|toast| toast.until.is_none_or(|until| now < until));
+        self.0
+            .retain(|toast| toast.until.is_none_or(|until| now < until));
         if let Some(next) = self.0.iter().filter_map(|toast| toast.until).min() {
             ctx.request_repaint_after(next.saturating_duration_since(now));
         }
         if self.0.is_empty() {
             return;
         }
-        Area::new(Id::new("toasts"))
+        Area::new(Id::unique("toasts"))
             .order(Order::Foreground)
             .pivot(Align2::RIGHT_BOTTOM)
             .fixed_pos(bottom_right - vec2(tokens::PAD, tokens::PAD))
@@ -83,7 +84,11 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
         .inner_margin(tokens::PAD)
         .show(ui, |ui| {
             ui.horizontal(|ui| {
-                ui.label(RichText::new(format!("{icon} {word}")).color(colour).strong());
+                ui.label(
+                    RichText::new(format!("{icon} {word}"))
+                        .color(colour)
+                        .strong(),
+                );
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     dismissed = ui.small_button("Dismiss").clicked();
                 });

@@ -9,9 +9,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use pickglass::design::Design;
 use pickglass::job::{Cancelled, Job};
 
-use crate::stub::design::Design;
 use crate::stub::still::{self, Pass, PreparedCloth, StillError, StillRequest, Stop};
 
 /// A picture that the window wants to see refine.
@@ -50,7 +50,10 @@ pub enum Phase {
     #[default]
     Idle,
     /// Builds what all pictures of the cloth need.
-    Preparing { stage: String, fraction: f32 },
+    Preparing {
+        stage: String,
+        fraction: f32,
+    },
     Refining,
     /// The picture is as good as asked for.
     Done,
@@ -262,7 +265,10 @@ fn serve(
     prepared: &mut Option<(PreviewRequest, PreparedCloth)>,
     first: &mut FirstLevel,
 ) -> Result<(), StillError> {
-    if !prepared.as_ref().is_some_and(|(of, _)| of.same_cloth(request)) {
+    if !prepared
+        .as_ref()
+        .is_some_and(|(of, _)| of.same_cloth(request))
+    {
         *prepared = None;
         *prepared = Some((request.clone(), prepare(desk, request, job)?));
     }
@@ -359,8 +365,11 @@ mod tests {
     use std::time::Duration;
 
     fn request(generation: u64, design: &Arc<Design>) -> PreviewRequest {
-        let mut still = crate::window::app::usual_request();
-        (still.width, still.height) = (64, 48);
+        let still = StillRequest {
+            width: 64,
+            height: 48,
+            ..StillRequest::default()
+        };
         PreviewRequest {
             generation,
             design: Arc::clone(design),
