@@ -98,12 +98,25 @@ impl Opened {
         self.design.yarn(self.yarn_on_top(end, pick)).colour
     }
 
-    /// Which crossing of the endless cloth lies at a point, mm.
-    pub fn crossing_at(&self, [x, y]: [f32; 2]) -> (i64, i64) {
-        (
+    /// The crossing at a point of the cloth (mm) in words; `None` where there is no cloth.
+    pub fn describe_crossing(&self, [x, y]: [f32; 2]) -> Option<String> {
+        let (end, pick) = (
             self.ends.locate(f64::from(x)).0,
             self.picks.locate(f64::from(y)).0,
-        )
+        );
+        let (ends, picks) = (self.design.ends(), self.design.picks());
+        let (home_end, home_pick) = self.design.lattice().wrap(end, pick, ends, picks)?;
+        let maps = self.design.maps();
+        let name = |yarn| self.design.yarn(yarn).name.as_str();
+        let (warp, weft) = (name(maps.warp(end, pick)), name(maps.weft(end, pick)));
+        let (above, below) = if self.weave.get(home_end, home_pick) {
+            (warp, weft)
+        } else {
+            (weft, warp)
+        };
+        Some(format!(
+            "end {home_end} · pick {home_pick} · {above} over {below}"
+        ))
     }
 
     /// Size of one repeat of the weave, mm.

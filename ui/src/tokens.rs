@@ -78,7 +78,7 @@ impl Palette {
                 quiet: Color32::from_gray(185),
                 text: Color32::from_gray(221),
                 warning: Color32::from_rgb(232, 176, 74),
-                error: Color32::from_rgb(240, 124, 112),
+                error: Color32::from_rgb(244, 138, 126),
             },
             Theme::Light => Self {
                 deep: Color32::from_gray(249),

@@ -47,6 +47,8 @@ pub struct Viewer {
     files: Files,
     export: Export,
     toasts: Toasts,
+    /// The crossing under the pointer, in words.
+    crossing: Option<String>,
     frames_left: Option<u32>,
 }
 
@@ -73,6 +75,7 @@ impl Viewer {
             files: Files::default(),
             export: Export::default(),
             toasts: Toasts::default(),
+            crossing: None,
             frames_left: None,
         };
         if let Some(opened) = opened {
@@ -190,15 +193,17 @@ impl Viewer {
             Command::ActualSize => self.rescale(|view| view.mm_per_point = ACTUAL_SIZE),
             Command::ZoomIn => self.zoom(ZOOM_STEP),
             Command::ZoomOut => self.zoom(1.0 / ZOOM_STEP),
+            Command::Pause if self.paused => self.resume(),
             Command::Pause => {
-                self.paused = !self.paused;
-                if self.paused {
-                    self.worker.stop();
-                } else {
-                    self.asked = None;
-                }
+                self.paused = true;
+                self.worker.stop();
             }
         }
+    }
+
+    fn resume(&mut self) {
+        self.paused = false;
+        self.asked = None;
     }
 
     fn rescale(&mut self, change: impl FnOnce(&mut ClothView)) {
@@ -243,11 +248,14 @@ impl Viewer {
             light: self.light.clone(),
             ..StillRequest::default()
         };
-        if self.paused || self.asked.as_ref() == Some(&still) {
+        if self.asked.as_ref() == Some(&still) {
+            return;
+        }
+        self.asked = Some(still.clone());
+        if self.paused {
             return;
         }
         self.generation += 1;
-        self.asked = Some(still.clone());
         self.reported_failure = None;
         self.worker.request(PreviewRequest {
             generation: self.generation,
@@ -279,7 +287,7 @@ impl Viewer {
         }
     }
 
-    fn status_ui(&mut self, ui: &mut egui::Ui, crossing: Option<(i64, i64)>) {
+    fn status_ui(&mut self, ui: &mut egui::Ui) {
         let phase = self.worker.phase();
         let cancel = status::show(
             ui,
@@ -289,7 +297,8 @@ impl Viewer {
                 phase: &phase,
                 paused: self.paused,
                 export: self.export.progress(),
-                crossing,
+                reading: self.files.reading(),
+                crossing: self.crossing.as_deref(),
             },
         );
         match cancel {
@@ -329,9 +338,11 @@ impl Viewer {
         (rect.width() < 1.0 || rect.height() < 1.0).then_some(rect)
     }
 
-    fn cloth_ui(&mut self, ui: &mut egui::Ui) -> Option<(i64, i64)> {
+    fn cloth_ui(&mut self, ui: &mut egui::Ui) {
         let pane = ui.available_rect_before_wrap();
-        let opened = self.opened.clone()?;
+        let Some(opened) = self.opened.clone() else {
+            return;
+        };
         let mut view = match self.cloth_view {
             Some(view) => view,
             None => self.initial_view(pane, &opened),
@@ -345,8 +356,10 @@ impl Viewer {
         }
         // Only the straight views show where a crossing lies.
         let straight = matches!(self.view, View::Face | View::Back);
-        let at = response.hover_pos().filter(|_| straight)?;
-        Some(opened.crossing_at(view.to_cloth(pane, at)))
+        self.crossing = response
+            .hover_pos()
+            .filter(|_| straight)
+            .and_then(|at| opened.describe_crossing(view.to_cloth(pane, at)));
     }
 
     /// In the middle of an empty pane: what is being done, how far, cancel.
@@ -366,12 +379,11 @@ impl Viewer {
                 ui.label(RichText::new("Stopped").text_style(egui::TextStyle::Heading));
                 ui.label("The cloth is not being drawn.");
                 if ui.button("Draw it").clicked() {
-                    self.paused = false;
-                    self.asked = None;
+                    self.resume();
                 }
             }
             Phase::Failed(error) => {
-                ui.label(RichText::new("⊗ Error").text_style(egui::TextStyle::Heading));
+                ui.label(RichText::new("Error").text_style(egui::TextStyle::Heading));
                 ui.label(error);
                 if ui.button("Try again").clicked() {
                     self.asked = None;
@@ -451,6 +463,40 @@ fn hovered_ui(ctx: &egui::Context, pane: Rect) {
     );
 }
 
+#[cfg(test)]
+impl Viewer {
+    /// Paths per pixel of the picture shown, 0 while it is a coarse one.
+    pub fn full_size_spp(&self) -> u32 {
+        self.pane
+            .shown
+            .as_ref()
+            .map_or(0, |shown| if shown.full_size { shown.spp } else { 0 })
+    }
+
+    pub fn asked_view(&self) -> Option<View> {
+        self.asked.as_ref().map(|asked| asked.view)
+    }
+
+    pub fn cloth_view(&self) -> Option<ClothView> {
+        self.cloth_view
+    }
+
+    pub fn set_export_defaults(&mut self, width: u32, seconds: f64, path: &std::path::Path) {
+        self.export.defaults = super::export::Defaults {
+            width,
+            seconds,
+            path: Some(path.to_owned()),
+        };
+    }
+
+    pub fn pause(&mut self) {
+        self.paused = true;
+        self.worker.stop();
+        self.pane.shown = None;
+        self.asked = None;
+    }
+}
+
 impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
@@ -459,28 +505,22 @@ impl eframe::App for Viewer {
             self.obey(&ctx, command);
         }
         Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
-        let hover = ctx.data(|data| data.get_temp::<Option<(i64, i64)>>(Id::unique("crossing")));
         Panel::bottom("status")
             .exact_size(7.0 * tokens::GRID)
-            .show(ui, |ui| self.status_ui(ui, hover.flatten()));
+            .show(ui, |ui| self.status_ui(ui));
         if self.show_strip && self.opened.is_some() {
             Panel::left("strip")
                 .default_size(tokens::STRIP_WIDTH)
                 .show(ui, |ui| self.strip_ui(ui));
         }
         let pane = ui.available_rect_before_wrap();
-        let crossing = CentralPanel::default()
-            .frame(Frame::NONE)
-            .show(ui, |ui| {
-                if self.opened.is_some() {
-                    self.cloth_ui(ui)
-                } else {
-                    self.empty_ui(ui);
-                    None
-                }
-            })
-            .inner;
-        ctx.data_mut(|data| data.insert_temp(Id::unique("crossing"), crossing));
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            if self.opened.is_some() {
+                self.cloth_ui(ui);
+            } else {
+                self.empty_ui(ui);
+            }
+        });
         hovered_ui(&ctx, pane);
         self.toasts.show(&ctx, pane.right_bottom());
         self.files.show(&ctx);

@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::{DragValue, Id, Modal, RichText};
 use pickglass::job::Job;
 
+use super::icons;
 use super::task::{Outcome, Task};
+use super::toasts::Grade;
 use crate::opened::Opened;
 use crate::stub::still::{self, StillError, StillReport, StillRequest, Stop};
 use crate::tokens::{self, Palette};
@@ -19,9 +21,28 @@ pub enum Exported {
     Failed(String),
 }
 
+/// What the form starts with.
+pub struct Defaults {
+    pub width: u32,
+    pub seconds: f64,
+    /// `None` = named after the design.
+    pub path: Option<PathBuf>,
+}
+
+impl Default for Defaults {
+    fn default() -> Self {
+        Self {
+            width: 2560,
+            seconds: 60.0,
+            path: None,
+        }
+    }
+}
+
 /// The export form and the export under way.
 #[derive(Default)]
 pub struct Export {
+    pub defaults: Defaults,
     form: Option<Form>,
     dialog: Option<Task<Option<PathBuf>>>,
     work: Option<Work>,
@@ -53,9 +74,12 @@ impl Export {
     pub fn ask(&mut self, opened: Opened, still: StillRequest) {
         if self.work.is_none() {
             self.form = Some(Form {
-                path: format!("{}.png", opened.name()),
-                width: 2560,
-                seconds: 60.0,
+                path: match &self.defaults.path {
+                    Some(path) => path.display().to_string(),
+                    None => format!("{}.png", opened.name().replace(['/', '\\'], "-")),
+                },
+                width: self.defaults.width,
+                seconds: self.defaults.seconds,
                 opened,
                 still,
                 wrong: None,
@@ -226,7 +250,10 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
             ui.end_row();
         });
     if let Some(wrong) = &form.wrong {
-        ui.label(RichText::new(format!("⊗ Error: {wrong}")).color(palette.error));
+        ui.horizontal(|ui| {
+            icons::show(ui, Grade::Error, palette.error);
+            ui.label(RichText::new(format!("Error: {wrong}")).color(palette.error));
+        });
     }
     ui.add_space(tokens::GAP);
     ui.horizontal(|ui| {

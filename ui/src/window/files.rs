@@ -10,7 +10,7 @@ use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 
 /// A dialog that ends sooner than this without a choice never opened, s.
-const NEVER_OPENED: f64 = 0.25;
+const NEVER_OPENED: f64 = 1.5;
 
 /// What opening came to.
 pub enum Opening {

@@ -8,6 +8,7 @@ mod app;
 mod cloth_pane;
 mod export;
 mod files;
+mod icons;
 mod menu;
 mod status;
 mod strip;

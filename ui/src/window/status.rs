@@ -3,6 +3,8 @@
 use egui::{ProgressBar, RichText};
 
 use super::cloth_pane::Shown;
+use super::icons;
+use super::toasts::Grade;
 use super::worker::Phase;
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
@@ -14,8 +16,10 @@ pub struct Status<'s> {
     pub phase: &'s Phase,
     pub paused: bool,
     pub export: Option<String>,
-    /// The crossing under the pointer.
-    pub crossing: Option<(i64, i64)>,
+    /// The file that is being read.
+    pub reading: Option<&'s str>,
+    /// The crossing under the pointer, in words.
+    pub crossing: Option<&'s str>,
 }
 
 /// What the person wants ended.
@@ -35,10 +39,15 @@ pub fn show(ui: &mut egui::Ui, status: &Status<'_>) -> Option<Cancel> {
             let (ends, picks) = (design.ends(), design.picks());
             ui.label(format!("{} · {ends} ends × {picks} picks", opened.name()));
         }
-        if let Some((end, pick)) = status.crossing {
-            ui.label(RichText::new(format!("end {end} · pick {pick}")).color(quiet));
+        if let Some(crossing) = status.crossing {
+            ui.label(RichText::new(crossing).color(quiet));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(name) = status.reading {
+                ui.label(format!("Reading {name}"));
+                ui.spinner();
+                ui.separator();
+            }
             if let Some(progress) = &status.export {
                 if ui.small_button("Cancel export").clicked() {
                     cancel = Some(Cancel::Export);
@@ -69,7 +78,8 @@ fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
             return cancelled;
         }
         Phase::Failed(_) => {
-            ui.label(RichText::new("⊗ Error: not drawn").color(palette.error));
+            ui.label(RichText::new("Error: not drawn").color(palette.error));
+            icons::show(ui, Grade::Error, palette.error);
         }
         _ => {
             if let Some(shown) = status.shown {

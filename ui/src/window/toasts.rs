@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Align2, Area, Frame, Id, Label, Order, RichText, Stroke, vec2};
 
+use super::icons;
 use crate::tokens::{self, Palette};
 
 /// How grave a message is.
@@ -71,10 +72,10 @@ impl Toasts {
 /// Shows one message; true when it was dismissed.
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
     let palette = Palette::current(ui);
-    let (icon, word, colour) = match toast.grade {
-        Grade::Done => ("✔", "Done", palette.text),
-        Grade::Warning => ("⚠", "Warning", palette.warning),
-        Grade::Error => ("⊗", "Error", palette.error),
+    let (word, colour) = match toast.grade {
+        Grade::Done => ("Done", palette.text),
+        Grade::Warning => ("Warning", palette.warning),
+        Grade::Error => ("Error", palette.error),
     };
     let mut dismissed = false;
     Frame::new()
@@ -84,11 +85,8 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
         .inner_margin(tokens::PAD)
         .show(ui, |ui| {
             ui.horizontal(|ui| {
-                ui.label(
-                    RichText::new(format!("{icon} {word}"))
-                        .color(colour)
-                        .strong(),
-                );
+                icons::show(ui, toast.grade, colour);
+                ui.label(RichText::new(word).color(colour).strong());
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     dismissed = ui.small_button("Dismiss").clicked();
                 });
