@@ -12,6 +12,7 @@ pub mod exemplar;
 pub mod formats;
 pub mod job;
 pub mod render;
+pub mod still;
 pub mod synthesis;
 pub mod volume;
 pub mod yarn;

@@ -290,7 +290,7 @@ fn positions(density: &Density, threads: u32) -> Positions {
 }
 
 /// Least common multiple, saturating.
-pub(crate) fn lcm(a: u64, b: u64) -> u64 {
+fn lcm(a: u64, b: u64) -> u64 {
     let (mut x, mut y) = (a.max(1), b.max(1));
     while y != 0 {
         (x, y) = (y, x % y);

@@ -27,7 +27,6 @@ mod structure;
 mod weaves;
 mod yarn;
 
-pub(crate) use document::lcm;
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };

@@ -1,1 +1,24 @@
-//! Exemplars: voxels plus their small weave pattern.
+//! Exemplars: voxels plus their small weave pattern; data to copy from.
+//!
+//! Zhao 2012 §4: each exemplar is a voxel grid (density, fibre direction, yarn) and the
+//! weave pattern that it shows. Here they are built from recipes ([`crate::yarn`]); a
+//! scan meets the program at the same type. An [`ExemplarSet`] belongs to one pair of
+//! yarns and holds one exemplar for each weave of the catalogue, all with one block size.
+//!
+//! [`voxelise`] turns fibres into voxels, [`BrickVolume`] stores them sparsely, and
+//! [`ExemplarSet`] builds, keeps and caches them.
+
+mod bricks;
+mod direction;
+mod heights;
+mod majorants;
+mod set;
+mod store;
+pub mod voxelise;
+
+pub use bricks::{BRICK, BrickVolume, PackedVoxel};
+pub use direction::{decode_direction, encode_direction};
+pub use majorants::{Allowance, BlockMajorants, CELL};
+pub use set::{ExemplarError, ExemplarSet, Pair, common_grid, quantise};
+pub use store::ExemplarStore;
+pub use voxelise::VoxelGrid;

@@ -1,17 +1,131 @@
-//! Files appear whole or not at all.
+//! Writing files so that nothing is ever half-written.
 
-use std::io::Write;
-use std::path::Path;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
-/// Writes a file through a temporary one beside it: write, fsync, rename.
-pub fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+/// A file that could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {source}; {}", path.display(), self.remedy())]
+pub struct WriteError {
+    /// The file that was to be written; what was there before is unchanged.
+    pub path: PathBuf,
+    /// What the system said.
+    pub source: io::Error,
+}
+
+impl WriteError {
+    fn remedy(&self) -> &'static str {
+        match self.source.kind() {
+            io::ErrorKind::NotFound => "make its folder first",
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                "choose a folder you may write to"
+            }
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                "free some space or choose another disk"
+            }
+            _ => "what was there before is unchanged",
+        }
+    }
+}
+
+/// Puts `bytes` at `path`, whole or not at all: written to a temporary file in the same
+/// folder, brought to the disk, then renamed over `path`.
+///
+/// # Errors
+/// [`WriteError`]; the temporary file is removed and `path` is as it was.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    write_with(path, |out| out.write_all(bytes))
+}
+
+/// As [`write`], with the bytes produced by `fill` into a buffered file.
+///
+/// # Errors
+/// [`WriteError`]; also what `fill` returns.
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), WriteError> {
+    put(path, fill).map_err(|source| WriteError {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn put(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(bytes)?;
+    let mut options = tempfile::Builder::new();
+    options.prefix(".pickglass-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        // As any new file: readable by whom the umask allows; an old file keeps its own.
+        use std::os::unix::fs::PermissionsExt;
+        options.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = options.tempfile_in(folder)?;
+    if let Ok(old) = std::fs::metadata(path)
+        && old.is_file()
+    {
+        file.as_file().set_permissions(old.permissions())?;
+    }
+    {
+        let mut out = io::BufWriter::new(file.as_file_mut());
+        fill(&mut out)?;
+        out.flush()?;
+    }
     file.as_file().sync_all()?;
-    file.persist(path)?;
+    file.persist(path).map_err(|failed| failed.error)?;
+    // The rename itself lasts once the folder is on the disk; not every system can do it.
+    #[cfg(unix)]
+    if let Ok(folder) = std::fs::File::open(folder) {
+        let _ = folder.sync_all();
+    }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("design.ron");
+        write(&path, b"old").unwrap();
+        write(&path, b"new and longer").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new and longer");
+        assert_eq!(names(folder.path()), ["design.ron"]);
+    }
+
+    #[test]
+    fn a_failure_half_way_leaves_the_old_file_and_no_rubbish() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("design.ron");
+        write(&path, b"old").unwrap();
+        let failed = write_with(&path, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::other("the pen broke"))
+        });
+        let message = failed.unwrap_err().to_string();
+        assert!(message.contains("design.ron") && message.contains("the pen broke"));
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["design.ron"]);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named_with_a_remedy() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("missing/design.ron");
+        let message = write(&path, b"").unwrap_err().to_string();
+        assert!(message.contains("make its folder first"), "{message}");
+    }
 }

@@ -24,6 +24,9 @@ pub const NO_YARN: u32 = u32::MAX;
 /// Why an EXR could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExrError {
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] atomic::WriteError),
     /// The codec refused.
     #[error("exr: {0}; check that the file is a complete OpenEXR picture")]
     Codec(#[from] exr::error::Error),
@@ -100,10 +103,7 @@ pub fn write(
     texts: &[(String, String)],
 ) -> Result<(), ExrError> {
     let bytes = encode(film, pixels_per_mm, texts)?;
-    atomic::write(path, &bytes).map_err(|source| ExrError::File {
-        path: path.to_owned(),
-        source,
-    })
+    Ok(atomic::write(path, &bytes)?)
 }
 
 fn channels(film: &Film) -> AnyChannels<FlatSamples> {

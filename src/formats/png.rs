@@ -1,6 +1,6 @@
 //! PNG stills: sRGB with alpha, 8 or 16 bits, true scale and text in the metadata.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::atomic;
 
@@ -52,13 +52,8 @@ pub enum PngError {
     #[error("png: {0}; check the size and the text keywords")]
     Encode(#[from] png::EncodingError),
     /// The file could not be written.
-    #[error("{path}: {source}; check the folder and the space left", path = path.display())]
-    Write {
-        /// Where.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] atomic::WriteError),
 }
 
 /// Encodes a picture into the bytes of a PNG file.
@@ -81,7 +76,7 @@ pub fn encode(picture: &Picture, depth: Depth, metadata: &Metadata) -> Result<Ve
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     if let Some(per_mm) = metadata.pixels_per_mm {
         let per_metre = (per_mm * 1000.0).round();
-        if per_metre >= 1.0 && per_metre < 2e9 {
+        if (1.0..2e9).contains(&per_metre) {
             encoder.set_pixel_dims(Some(png::PixelDimensions {
                 xppu: per_metre as u32,
                 yppu: per_metre as u32,
@@ -110,10 +105,7 @@ pub fn write(
     metadata: &Metadata,
 ) -> Result<(), PngError> {
     let bytes = encode(picture, depth, metadata)?;
-    atomic::write(path, &bytes).map_err(|source| PngError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    Ok(atomic::write(path, &bytes)?)
 }
 
 /// The samples in file order, big-endian. NaN becomes 0.

@@ -28,11 +28,11 @@ impl ErrorEstimate {
 
 /// Estimates the error of a film from its even and odd samples.
 ///
-/// Each pixel gives two independent estimates r₀, r₁ of its relative variance, one a
-/// half. Their mean estimates the error; half their difference has, over all pixels, the
-/// spread of that mean, because pixels are independent too. A bright outlier raises the
-/// variance and the mean of its own half together, which would bias a ratio downwards,
-/// so each half's variance is set against the other half's mean.
+/// A bright sample raises the variance and the mean of its pixel together, so the plain
+/// ratio is too small, by a share that falls with 1/n. The ratios of the two halves show
+/// how much: twice the whole less the mean of the halves (the jackknife) is free of it.
+/// Half the difference of the halves' variances, over the common mean, gives the spread;
+/// pixels are independent of each other.
 pub fn estimate(film: &Film) -> ErrorEstimate {
     let mut sum = 0.0;
     let mut spread = 0.0;
@@ -41,20 +41,15 @@ pub fn estimate(film: &Film) -> ErrorEstimate {
             return ErrorEstimate::UNKNOWN;
         };
         let n = f64::from(pixel.samples());
-        let relative = |variance: f64, other_mean: f64, other_variance: f64| {
-            // 1/(mean²+c) of a noisy mean is too small by its own variance: take it out
-            // (never more than half of it).
-            let noise = other_variance * 2.0 / n;
-            let square = other_mean * other_mean;
-            variance / n / ((square - noise).max(0.5 * square) + DARK * DARK)
-        };
-        let r0 = relative(v0, m1, v1);
-        let r1 = relative(v1, m0, v0);
-        sum += 0.5 * (r0 + r1);
-        spread += 0.25 * (r0 - r1) * (r0 - r1);
+        let relative = |variance: f64, mean: f64| variance / n / (mean * mean + DARK * DARK);
+        let whole = pixel.luminance();
+        let of_whole = relative(pixel.variance() * n, whole);
+        sum += 2.0 * of_whole - 0.5 * (relative(v0, m0) + relative(v1, m1));
+        let difference = 0.5 * relative(v0 - v1, whole);
+        spread += difference * difference;
     }
     let n = film.pixels().len() as f64;
-    let mean = sum / n;
+    let mean = (sum / n).max(0.0);
     let margin = 1.96 * spread.sqrt() / n;
     ErrorEstimate {
         error: mean.sqrt(),

@@ -9,11 +9,13 @@
 
 pub mod camera;
 pub mod counters;
+pub mod effects;
 pub mod environment;
 pub mod error;
 pub mod film;
 pub mod light;
 mod medium;
+pub mod orders;
 pub mod path;
 pub mod random;
 pub mod settings;
@@ -30,6 +32,7 @@ pub use error::{ErrorEstimate, estimate};
 pub use film::{Film, FirstHit, Pixel, Sample};
 pub use light::{LightError, LightRig, PRESET_NAMES, Sky, Sun};
 pub use medium::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
+pub use orders::{OrderHistogram, order_histogram};
 pub use random::Random;
 pub use settings::{Background, Backing, RenderSettings};
 pub use sggx::Fibre;

@@ -317,9 +317,12 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
         random: &mut Random,
         counters: &mut Counters,
     ) -> f32 {
-        if !(light > 0.0) {
-            // Nothing to bring; NaN goes on to be counted by the film.
-            return if light.is_nan() { 1.0 } else { 0.0 };
+        if light.is_nan() {
+            // Goes on to be counted by the film.
+            return 1.0;
+        }
+        if light <= 0.0 {
+            return 0.0;
         }
         let ray = Ray {
             origin: point,

@@ -1,21 +1,21 @@
 //! A picture, pass by pass: one loop for the command line and the window.
 
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::camera::Camera;
 use super::counters::Counters;
-use super::environment::{Dark, Environment};
+use super::effects::{WithPath, with_path};
+use super::environment::Environment;
 use super::error::{ErrorEstimate, estimate};
 use super::film::{Film, Pixel};
-use super::light::{LightRig, Sky};
-use super::path::{Path, Plane, Total};
+use super::light::LightRig;
+use super::path::{Path, Total};
 use super::random::Random;
-use super::settings::{Backing, RenderSettings};
-use super::stack::Stack;
+use super::settings::RenderSettings;
 use super::track::Scatterer;
 use crate::job::{Cancelled, Job};
-use glam::Vec3;
 
 /// Rows that one task takes; their pixels are visited in squares of this edge.
 const TILE: u32 = 8;
@@ -60,118 +60,52 @@ pub fn render<S: Scatterer>(
     job: &Job,
     on_pass: &mut dyn FnMut(&Film, &Progress),
 ) -> Result<RenderOutcome, Cancelled> {
-    let scene = Scene {
+    let from_below = camera.forward().z > 0.0;
+    let exposure = Exposure {
         camera,
-        lights,
         settings,
         job,
     };
-    match settings.backing {
-        Backing::None => scene.with_sky::<S, false>(scatterer, 0.0, on_pass),
-        Backing::White => scene.with_sky::<S, true>(scatterer, 0.95, on_pass),
-        Backing::Black => scene.with_sky::<S, true>(scatterer, 0.0, on_pass),
-        Backing::Itself => {
-            let away = camera.forward().z.is_sign_positive();
-            let slide = settings.backing_slide_mm.into();
-            let stack = Stack::behind(scatterer, settings.backing_layers, slide, away);
-            scene.with_sky::<_, false>(&stack, 0.0, on_pass)
-        }
-    }
+    let passes = Passes { exposure, on_pass };
+    with_path(scatterer, lights, settings, from_below, passes)
 }
 
-/// What stays the same while the effects are chosen.
-struct Scene<'s> {
+/// The passes over a film, once the effects are chosen.
+struct Passes<'s> {
+    exposure: Exposure<'s>,
+    on_pass: &'s mut dyn FnMut(&Film, &Progress),
+}
+
+/// What a single pass needs.
+#[derive(Clone, Copy)]
+struct Exposure<'s> {
     camera: &'s Camera,
-    lights: &'s LightRig,
     settings: &'s RenderSettings,
     job: &'s Job,
 }
 
-impl Scene<'_> {
-    fn with_sky<S: Scatterer, const PLANE: bool>(
-        &self,
-        scatterer: &S,
-        sheet_albedo: f32,
-        on_pass: &mut dyn FnMut(&Film, &Progress),
-    ) -> Result<RenderOutcome, Cancelled> {
-        let sky = if self.settings.sky {
-            &self.lights.sky
-        } else {
-            &Sky::Dark
-        };
-        match sky {
-            Sky::Dark => self.with_shadows::<_, _, PLANE>(scatterer, &Dark, sheet_albedo, on_pass),
-            Sky::Dome(dome) => {
-                self.with_shadows::<_, _, PLANE>(scatterer, dome, sheet_albedo, on_pass)
-            }
-            Sky::Image(image) => {
-                self.with_shadows::<_, _, PLANE>(scatterer, &**image, sheet_albedo, on_pass)
-            }
-        }
-    }
+impl WithPath for Passes<'_> {
+    type Output = Result<RenderOutcome, Cancelled>;
 
-    fn with_shadows<S: Scatterer, E: Environment, const PLANE: bool>(
-        &self,
-        scatterer: &S,
-        environment: &E,
-        sheet_albedo: f32,
-        on_pass: &mut dyn FnMut(&Film, &Progress),
-    ) -> Result<RenderOutcome, Cancelled> {
-        if self.settings.shadows {
-            let path = self.path::<S, E, true, PLANE>(scatterer, environment, sheet_albedo);
-            self.passes(&path, on_pass)
-        } else {
-            let path = self.path::<S, E, false, PLANE>(scatterer, environment, sheet_albedo);
-            self.passes(&path, on_pass)
-        }
-    }
-
-    fn path<'a, S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>(
-        &'a self,
-        scatterer: &'a S,
-        environment: &'a E,
-        sheet_albedo: f32,
-    ) -> Path<'a, S, E, SHADOWS, PLANE> {
-        let bounds = scatterer.bounds();
-        let from_above = self.camera.forward().z <= 0.0;
-        Path {
-            scatterer,
-            suns: &self.lights.suns,
-            environment,
-            turn: if self.lights.is_turned_over() {
-                Vec3::new(-1.0, 1.0, -1.0)
-            } else {
-                Vec3::ONE
-            },
-            plane: Plane {
-                z: if from_above {
-                    bounds.min.z
-                } else {
-                    bounds.max.z
-                },
-                facing: if from_above { 1.0 } else { -1.0 },
-                albedo: sheet_albedo,
-            },
-            max_order: self.settings.max_order,
-            roulette_order: self.settings.roulette_order,
-            shadow_roulette: self.settings.shadow_roulette.max(0.0),
-            background: self.settings.background,
-        }
-    }
-
-    fn passes<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>(
-        &self,
+    fn run<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>(
+        self,
         path: &Path<'_, S, E, SHADOWS, PLANE>,
-        on_pass: &mut dyn FnMut(&Film, &Progress),
     ) -> Result<RenderOutcome, Cancelled> {
+        let Exposure {
+            camera,
+            settings,
+            job,
+        } = self.exposure;
         let begun = Instant::now();
-        let mut film = Film::new(self.camera.width(), self.camera.height());
+        let mut film = Film::new(camera.width(), camera.height());
         let mut counters = Counters::default();
         let mut error = ErrorEstimate::UNKNOWN;
-        let wanted = self.settings.spp.max(1);
+        let wanted = settings.spp.max(1);
         while film.spp() < wanted {
-            let spp = self.settings.pass_spp.clamp(1, wanted - film.spp());
-            counters += self.pass(path, &mut film, spp)?;
+            // 1, 1, 2, 4, … up to the size of a pass: the first picture comes soon.
+            let spp = film.spp().clamp(1, settings.pass_spp.max(1));
+            let spp = spp.min(wanted - film.spp());
+            counters += self.exposure.pass(path, &mut film, spp)?;
             error = estimate(&film);
             let progress = Progress {
                 spp: film.spp(),
@@ -179,10 +113,10 @@ impl Scene<'_> {
                 error,
                 counters,
             };
-            self.job.report("render", film.spp() as f32 / wanted as f32);
-            on_pass(&film, &progress);
-            self.job.check()?;
-            if error.error < f64::from(self.settings.error) || self.job.expired() {
+            job.report("render", film.spp() as f32 / wanted as f32);
+            (self.on_pass)(&film, &progress);
+            job.check()?;
+            if error.error < f64::from(settings.error) || job.expired() {
                 break;
             }
         }
@@ -196,9 +130,12 @@ impl Scene<'_> {
             error,
         })
     }
+}
 
+impl Exposure<'_> {
     /// One pass of `spp` samples in every pixel. Every pixel's random numbers and sums
-    /// are its own, so threads and their order change nothing.
+    /// are its own, so threads and their order change nothing. When the deadline passes,
+    /// the bands not yet begun keep what they have.
     fn pass<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>(
         &self,
         path: &Path<'_, S, E, SHADOWS, PLANE>,
@@ -207,6 +144,7 @@ impl Scene<'_> {
     ) -> Result<Counters, Cancelled> {
         let width = film.width();
         let first = film.spp();
+        let unfinished = AtomicBool::new(false);
         let counts: Result<Vec<Counters>, Cancelled> = film
             .pixels_mut()
             .par_chunks_mut((width * TILE).max(1) as usize)
@@ -214,6 +152,10 @@ impl Scene<'_> {
             .map(|(band, pixels)| {
                 self.job.check()?;
                 let mut counters = Counters::default();
+                if first > 0 && self.job.expired() {
+                    unfinished.store(true, Ordering::Relaxed);
+                    return Ok(counters);
+                }
                 let top = band as u32 * TILE;
                 let rows = pixels.len() as u32 / width;
                 for left in (0..width).step_by(TILE as usize) {
@@ -227,7 +169,9 @@ impl Scene<'_> {
                 Ok(counters)
             })
             .collect();
-        film.finish_pass(spp);
+        if !unfinished.load(Ordering::Relaxed) {
+            film.finish_pass(spp);
+        }
         Ok(counts?.into_iter().sum())
     }
 

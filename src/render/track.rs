@@ -15,9 +15,10 @@ use super::medium::{Bounds, MajorantWalk, Medium, Ray, Voxel};
 use super::random::{Random, free_path};
 use super::sggx::Fibre;
 
-/// Tentative collisions after which a walk is given up and counted. A brick of cloth
-/// needs some tens; 2¹⁷ is reached only where the extinction is absurd.
-pub const STEP_CAP: u32 = 1 << 17;
+/// Tentative collisions after which a walk is given up and counted. A walk through a
+/// cloth needs tens, a grazing one hundreds; 2¹⁴ is reached only where the extinction is
+/// absurd.
+pub const STEP_CAP: u32 = 1 << 14;
 
 /// Where a flight ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,11 +68,11 @@ pub trait Scatterer: Sync {
     fn albedo(&self, optics: u32) -> Vec3;
 }
 
-/// A ray worth walking: finite origin, unit direction.
+/// A ray worth walking: finite origin, unit direction, an end that is a number.
 #[inline]
-fn is_sound(ray: &Ray) -> bool {
+fn is_sound(ray: &Ray, t_max: f32) -> bool {
     let unit = (ray.direction.length_squared() - 1.0).abs() < 1e-3;
-    unit && ray.origin.length_squared() < f32::MAX
+    unit && ray.origin.length_squared() < f32::MAX && !t_max.is_nan()
 }
 
 impl<M: Medium> Scatterer for M {
@@ -86,7 +87,7 @@ impl<M: Medium> Scatterer for M {
         random: &mut Random,
         counters: &mut Counters,
     ) -> Option<Collision> {
-        if !is_sound(ray) {
+        if !is_sound(ray, t_max) {
             counters.invalid_rays += 1;
             return None;
         }
@@ -99,7 +100,8 @@ impl<M: Medium> Scatterer for M {
             loop {
                 // Spend the optical depth; what the stretch cannot take is carried on.
                 let next = t + depth * mean_free_path;
-                if !(next < stretch.end) {
+                let within = next < stretch.end;
+                if !within {
                     depth = (depth - (stretch.end - t) * stretch.majorant).max(0.0);
                     break;
                 }
@@ -136,7 +138,7 @@ impl<M: Medium> Scatterer for M {
         random: &mut Random,
         counters: &mut Counters,
     ) -> f32 {
-        if !is_sound(ray) {
+        if !is_sound(ray, t_max) {
             counters.invalid_rays += 1;
             return 0.0;
         }
@@ -149,7 +151,8 @@ impl<M: Medium> Scatterer for M {
             let mut t = stretch.start;
             loop {
                 let next = t + depth * mean_free_path;
-                if !(next < stretch.end) {
+                let within = next < stretch.end;
+                if !within {
                     depth = (depth - (stretch.end - t) * stretch.majorant).max(0.0);
                     break;
                 }

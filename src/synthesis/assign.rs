@@ -1,9 +1,10 @@
 //! Which block every crossing of a design copies. Zhao 2012 §5.3 and §5.4.
 //!
 //! Comes in: a weave pattern, its lattice, a catalogue. Goes out: an [`Assignment`].
-//! Every choice depends on the keys of one column alone, hence on that column and its two
-//! neighbours: columns are worked out in parallel, and an edit redoes three of them.
+//! Every choice depends on the keys of one column and of the two beside it, hence on five
+//! columns of the pattern: columns are worked out in parallel, an edit redoes five.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -15,7 +16,7 @@ use crate::job::Job;
 
 use super::SynthesisError;
 use super::catalogue::{Catalogue, NO_BLOCK, Side};
-use super::chain::{Crossing, Scratch, cover};
+use super::chain::{Column, Scratch, cover};
 use super::hash::{hash, index_below};
 
 /// How a block is chosen for each crossing, from crude to reference.
@@ -155,15 +156,23 @@ impl Assignment {
             if end >= self.ends() || pick >= self.picks {
                 continue;
             }
-            stale[end as usize] = true;
-            for side in Side::ALL {
-                let (dx, dy) = side.offset();
-                let beside = (i64::from(end) + dx, i64::from(pick) + dy);
-                let (end, _) = neighbour_cell(pattern, self.lattice, beside.0, beside.1);
+            for (dx, dy) in self.dependents() {
+                let cell = (i64::from(end) + dx, i64::from(pick) + dy);
+                let (end, _) = neighbour_cell(pattern, self.lattice, cell.0, cell.1);
                 stale[end as usize] = true;
             }
         }
         self.redo(pattern, catalogue, &stale, job)
+    }
+
+    /// Offsets to the crossings whose block looks at a crossing: a key reads its four
+    /// neighbours, and the best chain also reads the keys to the left and right.
+    fn dependents(&self) -> impl Iterator<Item = (i64, i64)> {
+        let reach = if self.method == Method::Dp { 2 } else { 1 };
+        (-1..=1).flat_map(move |dy: i64| {
+            let across = reach - dy.abs();
+            (-across..=across).map(move |dx| (dx, dy))
+        })
     }
 
     /// Works out every chain of columns that holds a stale one.
@@ -175,16 +184,17 @@ impl Assignment {
         job: &Job,
     ) -> Result<Vec<u32>, SynthesisError> {
         let chains = stale_chains(self.lattice, pattern, stale);
+        let keys = self.keys_for(pattern, &chains, job)?;
         let done = AtomicUsize::new(0);
         let rebuilt: Vec<Vec<Arc<[u16]>>> = chains
             .par_iter()
             .map_init(Scratch::default, |scratch, chain| {
                 job.check()?;
                 let columns = match self.method {
-                    Method::Dp => self.best_chain(pattern, catalogue, chain, scratch),
+                    Method::Dp => self.best_chain(pattern, catalogue, chain, &keys, scratch),
                     Method::Naive | Method::Greedy => chain
                         .iter()
-                        .map(|&end| self.independent_column(pattern, catalogue, end))
+                        .map(|&end| self.independent_column(catalogue, end, &keys))
                         .collect(),
                 };
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -205,46 +215,91 @@ impl Assignment {
         Ok(redone)
     }
 
+    /// The keys of all columns of the chains and of the columns beside them; empty for
+    /// the others.
+    fn keys_for(
+        &self,
+        pattern: &WeavePattern,
+        chains: &[Vec<u32>],
+        job: &Job,
+    ) -> Result<Vec<Vec<u8>>, SynthesisError> {
+        let ends = self.columns.len();
+        let mut wanted = vec![false; ends];
+        for &end in chains.iter().flatten() {
+            let end = end as usize;
+            wanted[end] = true;
+            if self.method == Method::Dp {
+                wanted[(end + 1) % ends] = true;
+                wanted[(end + ends - 1) % ends] = true;
+            }
+        }
+        wanted
+            .par_iter()
+            .enumerate()
+            .map(|(end, &wanted)| {
+                job.check()?;
+                let mut keys = Vec::new();
+                if wanted {
+                    keys.reserve_exact(self.picks as usize);
+                    column_keys(pattern, self.lattice, end as u32, &mut keys);
+                }
+                Ok(keys)
+            })
+            .collect()
+    }
+
     /// The columns of a chain, as continuous along the warp as can be.
     fn best_chain(
         &self,
         pattern: &WeavePattern,
         catalogue: &Catalogue,
         chain: &[u32],
+        keys: &[Vec<u8>],
         scratch: &mut Scratch,
     ) -> Vec<Arc<[u16]>> {
-        let picks = self.picks as usize;
-        let mut keys = Vec::with_capacity(chain.len() * picks);
-        for &end in chain {
-            column_keys(pattern, self.lattice, end, &mut keys);
-        }
-        let crossing = |row: usize| Crossing {
-            end: chain[row / picks],
-            pick: (row % picks) as u32,
+        let beside = |step: i64| move |end: u32| self.keys_beside(pattern, keys, end, step);
+        let own = joined(chain, |end| Cow::Borrowed(&keys[end as usize]));
+        let left = joined(chain, beside(-1));
+        let right = joined(chain, beside(1));
+        let column = Column {
+            ends: chain,
+            picks: self.picks as usize,
+            keys: &own,
+            left: &left,
+            right: &right,
+            cyclic: self.lattice.along != Repeat::None,
         };
-        let cyclic = self.lattice.along != Repeat::None;
         let mut blocks = Vec::new();
-        cover(
-            catalogue,
-            &keys,
-            cyclic,
-            crossing,
-            self.seed,
-            scratch,
-            &mut blocks,
-        );
-        blocks.chunks_exact(picks).map(Arc::from).collect()
+        cover(catalogue, &column, self.seed, scratch, &mut blocks);
+        let columns = blocks.chunks_exact(self.picks as usize);
+        columns.map(Arc::from).collect()
+    }
+
+    /// The keys of the crossings left (step −1) or right (step 1) of a column's.
+    fn keys_beside<'a>(
+        &self,
+        pattern: &WeavePattern,
+        keys: &'a [Vec<u8>],
+        end: u32,
+        step: i64,
+    ) -> Cow<'a, [u8]> {
+        let beside = i64::from(end) + step;
+        let inside = (0..i64::from(self.ends())).contains(&beside);
+        if inside || !matches!(self.lattice.across, Repeat::Dropped(_)) {
+            let beside = beside.rem_euclid(i64::from(self.ends()));
+            return Cow::Borrowed(&keys[beside as usize]);
+        }
+        // Past the border of a dropped repeat the column is the last or first one, turned.
+        let picks = 0..i64::from(self.picks);
+        let turned = picks.map(|pick| {
+            let (end, pick) = neighbour_cell(pattern, self.lattice, beside, pick);
+            keys[end as usize][pick as usize]
+        });
+        turned.collect()
     }
 
     /// A column whose crossings are chosen one by one, at random.
-    fn independent_column(
-        &self,
-        pattern: &WeavePattern,
-        catalogue: &Catalogue,
-        end: u32,
-    ) -> Arc<[u16]> {
-        let mut keys = Vec::with_capacity(self.picks as usize);
-        column_keys(pattern, self.lattice, end, &mut keys);
+    fn independent_column(&self, catalogue: &Catalogue, end: u32, keys: &[Vec<u8>]) -> Arc<[u16]> {
         let choose = |(pick, &key): (usize, &u8)| {
             let list = match self.method {
                 Method::Naive => catalogue.correct(key & 1 == 1),
@@ -255,7 +310,18 @@ impl Assignment {
                 .copied()
                 .unwrap_or(NO_BLOCK)
         };
-        keys.iter().enumerate().map(choose).collect()
+        keys[end as usize].iter().enumerate().map(choose).collect()
+    }
+}
+
+/// One list of keys for all columns of a chain.
+fn joined<'a>(chain: &[u32], keys_of: impl Fn(u32) -> Cow<'a, [u8]>) -> Cow<'a, [u8]> {
+    match chain {
+        [end] => keys_of(*end),
+        _ => chain
+            .iter()
+            .flat_map(|&end| keys_of(end).into_owned())
+            .collect(),
     }
 }
 

@@ -1,295 +1,428 @@
-//! The 1-D optimum along a column: the fewest runs that cover it. Zhao 2012 §5.4.
+//! The 1-D optimum along a column of the cloth. Zhao 2012 §5.4.
 //!
 //! Zhao's recursion is f(i, t) = max over t′ of f(i − 1, t′) + gain(t′, t), and gain is 1
-//! for at most one t′ (the block below t in its exemplar). So an optimum is a cover of the
-//! column by the fewest *runs*: chains of blocks that stand on each other in one exemplar
-//! and are all candidates. A part of a run is a run; hence jumping as far as possible each
-//! time is optimal from a given start. On a cyclic column the optimum also depends on the
-//! start. The jump j ↦ j + (longest run at j) is monotone and commutes with a turn round
-//! the column, so every point of a cycle of that map is an optimal start (the argument of
-//! Lee and Lee 1984 for covering a circle by arcs); following jumps until one repeats
-//! finds it in linear time. The only better case, a closed cycle of blocks with no break
-//! at all, passes through every row and is looked for at row 0 first.
+//! for at most one t′, the block below t in its exemplar. So
+//! f(i, t) = max(best(i − 1), f(i − 1, below t) + 1): constant time for each candidate.
+//!
+//! Many choices are equally continuous along the warp. Among them the sum of a second
+//! score decides: how many of the blocks beside t in its exemplar would fit the crossings
+//! beside, so that neighbouring columns find continuity without knowing each other, and a
+//! fixed preference for some exemplars and phases, so that they tend to choose alike.
+//!
+//! A cyclic column is opened where some optimum has a break. Where no candidate of one
+//! row continues any of the row below, every optimum has. Else a closed cycle of blocks
+//! without any break is looked for. Else longest *runs* (chains of candidates that stand
+//! on each other in an exemplar) tell: an optimum covers the column by the fewest runs,
+//! and the jump j ↦ j + (longest run at j) is monotone and commutes with a turn round the
+//! column, so a row that repeats under it is an optimal start (the argument of Lee and
+//! Lee 1984 for covering a circle by the fewest arcs).
 
 use super::catalogue::{Catalogue, NO_BLOCK, Side};
 use super::hash::hash;
 
 /// One representative column for each class of exemplar columns that are translations of
 /// each other (Zhao 2012 §5.4, *Algorithm optimization*), as a compact list of blocks.
-#[derive(Debug, Clone, Default)]
+#[derive(Clone, Default)]
 pub(super) struct Columns {
-    /// Block id of each entry.
-    blocks: Vec<u16>,
-    /// Entry above each entry, `NO_BLOCK` past a border that does not wrap.
-    next: Vec<u16>,
-    /// Bit k: the entry is a candidate for key k.
-    accepts: Vec<u32>,
+    entries: Vec<Entry>,
     /// Candidate entries of each key.
     by_key: Vec<Vec<u16>>,
     /// For each entry and each column modulo the exemplar's width: the translated block.
     aligned: Vec<u16>,
-    /// First element of an entry in `aligned`.
-    aligned_base: Vec<u32>,
-    /// (exemplar, width, height) of each entry.
-    sizes: Vec<(u16, u16, u16)>,
+    /// Bit k of `[block][0]` (`[1]`): the block to its left (right) is a candidate for k.
+    beside: Vec<[u32; 2]>,
+    /// Bit k of `[key]`: some candidate of k stands on one of `key`.
+    continued_by: [u32; 32],
+}
+
+/// A block of a representative column.
+#[derive(Clone, Copy)]
+struct Entry {
+    block: u16,
+    /// Entries above and below, `NO_BLOCK` past a border that does not wrap.
+    above: u16,
+    below: u16,
+    /// Bit k: a candidate for key k.
+    accepts: u32,
+    exemplar: u16,
+    width: u16,
+    height: u16,
+    /// First element in `Columns::aligned`.
+    aligned: u32,
 }
 
 impl Columns {
     pub(super) fn new(catalogue: &Catalogue) -> Self {
+        let accepts = |block: u16| {
+            (0..32u8)
+                .filter(|&key| catalogue.candidates(key).contains(&block))
+                .fold(0u32, |bits, key| bits | 1 << key)
+        };
+        let accepts: Vec<u32> = (0..catalogue.blocks() as u16).map(accepts).collect();
         let mut columns = Self {
             by_key: vec![Vec::new(); 32],
             ..Self::default()
         };
         let mut entry_of = vec![NO_BLOCK; catalogue.blocks()];
         for block in 0..catalogue.blocks() as u16 {
-            let place = catalogue.place(block);
-            let exemplar = usize::from(place.exemplar);
-            let moves = column_moves(catalogue, exemplar);
-            let width = catalogue.weaves()[exemplar].ends() as u16;
-            let height = catalogue.weaves()[exemplar].picks() as u16;
-            // The representative is the leftmost column of its class.
-            if moves.iter().any(|&(a, _)| (place.x + a) % width < place.x) {
-                continue;
+            if let Some(entry) = columns.representative(catalogue, block) {
+                entry_of[usize::from(block)] = columns.entries.len() as u16;
+                columns.entries.push(entry);
             }
-            entry_of[usize::from(block)] = columns.blocks.len() as u16;
-            columns.blocks.push(block);
-            columns.sizes.push((place.exemplar, width, height));
-            columns.aligned_base.push(columns.aligned.len() as u32);
-            // The class's column that stands closest right of the cloth's column.
-            for end in 0..width {
-                let nearest = moves
-                    .iter()
-                    .min_by_key(|&&(a, b)| ((place.x + a + width - end) % width, b));
-                let (a, b) = nearest.copied().unwrap_or((0, 0));
-                let mut image = place;
-                image.x = (place.x + a) % width;
-                image.y = (place.y + b) % height;
-                columns.aligned.push(catalogue.block(image));
+            columns.beside.push([Side::Left, Side::Right].map(|side| {
+                let beside = catalogue.neighbour(block, side);
+                beside.map_or(0, |beside| accepts[usize::from(beside)])
+            }));
+        }
+        for index in 0..columns.entries.len() {
+            let block = columns.entries[index].block;
+            let entry_beyond = |side: Side| {
+                let beyond = catalogue.neighbour(block, side);
+                beyond.map_or(NO_BLOCK, |beyond| entry_of[usize::from(beyond)])
+            };
+            let entry = &mut columns.entries[index];
+            entry.above = entry_beyond(Side::Above);
+            entry.below = entry_beyond(Side::Below);
+            entry.accepts = accepts[usize::from(block)];
+            for key in (0..32).filter(|key| entry.accepts >> key & 1 == 1) {
+                columns.by_key[key].push(index as u16);
             }
         }
-        for (entry, &block) in columns.blocks.iter().enumerate() {
-            let above = catalogue.neighbour(block, Side::Above);
-            let next = above.map_or(NO_BLOCK, |above| entry_of[usize::from(above)]);
-            columns.next.push(next);
-            let mut accepts = 0;
-            for key in 0..32u8 {
-                if catalogue.candidates(key).contains(&block) {
-                    accepts |= 1 << key;
-                    columns.by_key[usize::from(key)].push(entry as u16);
+        for entry in &columns.entries {
+            if let Some(above) = columns.entries.get(usize::from(entry.above)) {
+                for key in (0..32).filter(|key| entry.accepts >> key & 1 == 1) {
+                    columns.continued_by[key] |= above.accepts;
                 }
             }
-            columns.accepts.push(accepts);
         }
         columns
+    }
+
+    /// The entry of a block that lies in the leftmost column of its class.
+    fn representative(&mut self, catalogue: &Catalogue, block: u16) -> Option<Entry> {
+        let place = catalogue.place(block);
+        let exemplar = usize::from(place.exemplar);
+        let width = catalogue.weaves()[exemplar].ends() as u16;
+        let height = catalogue.weaves()[exemplar].picks() as u16;
+        // The symmetries along which a chain of blocks may be moved sideways whole.
+        let wraps_along = catalogue.wraps(exemplar)[1];
+        let moves = catalogue.symmetries(exemplar).iter();
+        let moves = moves.filter(|&&(_, b)| wraps_along || b == 0);
+        if moves.clone().any(|&(a, _)| (place.x + a) % width < place.x) {
+            return None;
+        }
+        let aligned = self.aligned.len() as u32;
+        for end in 0..width {
+            // The class's column that stands closest right of the cloth's column.
+            let nearest = moves
+                .clone()
+                .min_by_key(|&&(a, b)| ((place.x + a + width - end) % width, b));
+            let (a, b) = nearest.copied().unwrap_or((0, 0));
+            let mut image = place;
+            image.x = (place.x + a) % width;
+            image.y = (place.y + b) % height;
+            self.aligned.push(catalogue.block(image));
+        }
+        Some(Entry {
+            block,
+            above: NO_BLOCK,
+            below: NO_BLOCK,
+            accepts: 0,
+            exemplar: place.exemplar,
+            width,
+            height,
+            aligned,
+        })
+    }
+
+    /// The block of an entry, translated so that exemplar columns fall on the cloth's
+    /// columns in step: neighbouring columns that choose alike are continuous.
+    #[inline]
+    fn align(&self, entry: &Entry, end: u32) -> u16 {
+        self.aligned[(entry.aligned + end % u32::from(entry.width)) as usize]
     }
 
     /// Entry above, when it is a candidate for `key`.
     #[inline]
     fn follow(&self, entry: u16, key: u8) -> Option<u16> {
-        let next = self.next[usize::from(entry)];
-        (next != NO_BLOCK && self.accepts[usize::from(next)] >> key & 1 == 1).then_some(next)
-    }
-
-    /// The block of an entry, translated so that exemplar columns fall on the cloth's
-    /// columns in step: neighbouring columns that make the same choice are continuous.
-    #[inline]
-    fn align(&self, entry: u16, end: u32) -> u16 {
-        let (_, width, _) = self.sizes[usize::from(entry)];
-        let base = self.aligned_base[usize::from(entry)];
-        self.aligned[(base + end % u32::from(width)) as usize]
-    }
-
-    /// Fixed order of preference among runs of equal worth, lowest first.
-    ///
-    /// It depends on the exemplar and on how its repeat lies on the cloth, not on the
-    /// crossing, so that neighbouring columns tend to choose alike, yet needs nothing but
-    /// the column itself.
-    fn preference(&self, catalogue: &Catalogue, entry: u16, start: Crossing, seed: u64) -> u64 {
-        let (exemplar, width, height) = self.sizes[usize::from(entry)];
-        let place = catalogue.place(self.align(entry, start.end));
-        let phase = |at: u16, crossing: u32, period: u16| {
-            let period = u32::from(period);
-            (u32::from(at) + period - crossing % period) % period
-        };
-        let across = phase(place.x, start.end, width);
-        let along = phase(place.y, start.pick, height);
-        hash(
-            seed,
-            u64::from(exemplar),
-            u64::from(across) << 32 | u64::from(along),
-        )
+        let above = self.entries[usize::from(entry)].above;
+        let fits = |above: &Entry| above.accepts >> key & 1 == 1;
+        self.entries
+            .get(usize::from(above))
+            .is_some_and(fits)
+            .then_some(above)
     }
 }
 
-/// The symmetries along which a chain of blocks may be moved sideways whole.
-fn column_moves(catalogue: &Catalogue, exemplar: usize) -> Vec<(u16, u16)> {
-    let wraps_along = catalogue.wraps(exemplar)[1];
-    let moves = catalogue.symmetries(exemplar).iter().copied();
-    moves.filter(|&(_, b)| wraps_along || b == 0).collect()
-}
+/// A continuous pair along the warp, in the score; everything else stays below.
+const ALONG: u64 = 1 << 32;
+/// A block beside that would fit, in the score.
+const BESIDE: u64 = 16;
+/// Preferences lie below this.
+const PREFERENCES: u64 = 16;
 
-/// A crossing of the design.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Crossing {
-    pub end: u32,
-    pub pick: u32,
+/// A column of the cloth: keys of its own crossings and of those beside it, row by row.
+pub(super) struct Column<'a> {
+    /// The design's columns that it consists of, upwards, `picks` rows each. Exemplar
+    /// columns are kept in step with them, run by run.
+    pub ends: &'a [u32],
+    /// Rows of each of the design's columns.
+    pub picks: usize,
+    /// Keys from the first row upwards.
+    pub keys: &'a [u8],
+    /// Keys of the crossings to the left.
+    pub left: &'a [u8],
+    /// Keys of the crossings to the right.
+    pub right: &'a [u8],
+    /// Whether the first row stands on the last.
+    pub cyclic: bool,
 }
 
 /// Buffers of one thread, kept between columns.
 #[derive(Default)]
 pub(super) struct Scratch {
-    alive: Vec<Survivor>,
-    before: Vec<Survivor>,
-    longest: Vec<u32>,
+    /// Each entry as it lies on this column.
+    laid: Vec<Laid>,
+    /// Preferences `[entry.preferences + row mod height]`.
+    preferences: Vec<u8>,
+    scores: Vec<u64>,
+    scores_below: Vec<u64>,
+    /// Best entry of each row.
+    best: Vec<u16>,
+    /// For each row and each of its candidates: whether it continues the row below.
+    continued: Vec<bool>,
+    /// First element of each row in `continued`.
+    rows: Vec<usize>,
+    runs: Vec<u32>,
     runs_above: Vec<u32>,
-    runs_here: Vec<u32>,
+    longest: Vec<u32>,
     visited: Vec<bool>,
 }
 
-/// A run under way: the entry it began with and the one it has reached.
-#[derive(Debug, Clone, Copy)]
-struct Survivor {
-    first: u16,
-    last: u16,
+/// An entry in step with a column of the cloth.
+#[derive(Clone, Copy)]
+struct Laid {
+    height: u32,
+    preferences: u32,
+    beside: [u32; 2],
 }
 
-/// Fills `blocks` with the best block for each key of a column, in column order.
-///
-/// `crossing(row)` says where a row lies in the design; it only breaks ties.
+/// Fills `blocks` with the best block for each row of a column.
 pub(super) fn cover(
     catalogue: &Catalogue,
-    keys: &[u8],
-    cyclic: bool,
-    crossing: impl Fn(usize) -> Crossing,
+    column: &Column<'_>,
     seed: u64,
     scratch: &mut Scratch,
     blocks: &mut Vec<u16>,
 ) {
-    blocks.clear();
-    blocks.resize(keys.len(), NO_BLOCK);
-    let mut painter = Painter {
-        catalogue,
+    let solver = Solver {
         columns: catalogue.columns(),
-        keys,
-        seed,
-        blocks,
+        column,
     };
-    let rows = keys.len();
-    if !cyclic {
-        let mut row = 0;
-        while row < rows {
-            let length = painter.grow(row, rows - row, scratch);
-            painter.paint(row, length, crossing(row), &scratch.alive);
-            row += length;
-        }
-        return;
-    }
-
-    // A run that closes on itself has no break at all.
-    if painter.grow(0, rows, scratch) == rows {
-        let columns = painter.columns;
-        let closes = |run: &Survivor| columns.next[usize::from(run.last)] == run.first;
-        if scratch.alive.iter().any(closes) {
-            scratch.alive.retain(closes);
-            painter.paint(0, rows, crossing(0), &scratch.alive);
+    blocks.clear();
+    blocks.resize(column.keys.len(), NO_BLOCK);
+    solver.lay(catalogue, seed, scratch);
+    let start = if column.cyclic {
+        if let Some(start) = solver.forced_break() {
+            start
+        } else if let Some(cycle) = solver.closed_cycle(scratch) {
+            solver.write_run(cycle, 0, column.keys.len(), blocks);
             return;
+        } else {
+            solver.longest_runs(scratch);
+            solver.repeating_start(scratch)
         }
-    }
-    // Follow the longest jumps until one repeats: that row is an optimal start.
-    painter.longest_runs(scratch);
-    scratch.visited.clear();
-    scratch.visited.resize(rows, false);
-    let mut start = 0;
-    while !scratch.visited[start] {
-        scratch.visited[start] = true;
-        start = (start + scratch.longest[start] as usize) % rows;
-    }
-    let mut covered = 0;
-    while covered < rows {
-        let row = (start + covered) % rows;
-        let length = painter.grow(row, rows - covered, scratch);
-        painter.paint(row, length, crossing(row), &scratch.alive);
-        covered += length;
-    }
+    } else {
+        0
+    };
+    solver.maximise(start, scratch);
+    solver.write_back(start, scratch, blocks);
 }
 
-struct Painter<'a> {
-    catalogue: &'a Catalogue,
+struct Solver<'a> {
     columns: &'a Columns,
-    keys: &'a [u8],
-    seed: u64,
-    blocks: &'a mut [u16],
+    column: &'a Column<'a>,
 }
 
-impl Painter<'_> {
-    /// Length of the longest run at `row`, at most `limit`; the runs of that length are
-    /// left in `scratch.alive`. Rows count round the column.
-    fn grow(&self, row: usize, limit: usize, scratch: &mut Scratch) -> usize {
-        let Scratch { alive, before, .. } = scratch;
-        alive.clear();
-        let first = &self.columns.by_key[usize::from(self.keys[row])];
-        alive.extend(first.iter().map(|&entry| Survivor {
-            first: entry,
-            last: entry,
-        }));
-        let mut length = 1;
-        let mut next_row = row;
-        while length < limit {
-            next_row += 1;
-            if next_row == self.keys.len() {
-                next_row = 0;
-            }
-            let key = self.keys[next_row];
-            before.clear();
-            before.extend(alive.iter().filter_map(|run| {
-                let last = self.columns.follow(run.last, key)?;
-                Some(Survivor { last, ..*run })
-            }));
-            if before.is_empty() {
-                break;
-            }
-            std::mem::swap(alive, before);
-            length += 1;
-        }
-        length
+impl Solver<'_> {
+    /// The design's column of a row.
+    fn end(&self, row: usize) -> u32 {
+        let ends = self.column.ends;
+        ends.get(row / self.column.picks).copied().unwrap_or(0)
     }
 
-    /// Writes the preferred one of the runs that start at `row`.
-    fn paint(&mut self, row: usize, length: usize, start: Crossing, runs: &[Survivor]) {
-        let columns = self.columns;
-        let best = runs
-            .iter()
-            .map(|run| run.first)
-            .min_by_key(|&first| columns.preference(self.catalogue, first, start, self.seed));
-        let Some(mut entry) = best else { return };
-        let mut at = row;
-        for _ in 0..length {
-            self.blocks[at] = columns.align(entry, start.end);
-            entry = columns.next[usize::from(entry)];
-            at = if at + 1 == self.keys.len() { 0 } else { at + 1 };
+    /// Puts every entry in step with the column's first row and gives it its preferences.
+    fn lay(&self, catalogue: &Catalogue, seed: u64, scratch: &mut Scratch) {
+        scratch.laid.clear();
+        scratch.preferences.clear();
+        let end = self.end(0);
+        for entry in &self.columns.entries {
+            let block = self.columns.align(entry, end);
+            let place = catalogue.place(block);
+            let width = u32::from(entry.width);
+            let height = u32::from(entry.height);
+            let across = (u32::from(place.x) + width - end % width) % width;
+            scratch.laid.push(Laid {
+                height,
+                preferences: scratch.preferences.len() as u32,
+                beside: self.columns.beside[usize::from(block)],
+            });
+            for row in 0..height {
+                let along = (u32::from(place.y) + height - row) % height;
+                let phase = u64::from(across) << 32 | u64::from(along);
+                let liking = hash(seed, u64::from(entry.exemplar), phase) % PREFERENCES;
+                scratch.preferences.push(liking as u8);
+            }
         }
+    }
+
+    /// What an entry is worth at a row, apart from continuity along the warp.
+    #[inline]
+    fn worth(&self, entry: u16, row: usize, scratch: &Scratch) -> u64 {
+        let laid = &scratch.laid[usize::from(entry)];
+        let left = laid.beside[0] >> self.column.left[row] & 1;
+        let right = laid.beside[1] >> self.column.right[row] & 1;
+        let phase = row as u32 % laid.height;
+        let liking = scratch.preferences[(laid.preferences + phase) as usize];
+        BESIDE * u64::from(left + right) + u64::from(liking)
+    }
+
+    /// The first row that no candidate can continue from the row below.
+    fn forced_break(&self) -> Option<usize> {
+        let keys = self.column.keys;
+        let mut below = *keys.last()?;
+        keys.iter().position(|&key| {
+            let broken = self.columns.continued_by[usize::from(below)] >> key & 1 == 0;
+            below = key;
+            broken
+        })
+    }
+
+    /// The entry at row 0 of the best cycle of blocks that closes on itself.
+    fn closed_cycle(&self, scratch: &Scratch) -> Option<u16> {
+        let first = *self.column.keys.first()?;
+        let sum_round = |&start: &u16| {
+            let mut sum = self.worth(start, 0, scratch);
+            let mut entry = start;
+            for (row, &key) in self.column.keys.iter().enumerate().skip(1) {
+                entry = self.columns.follow(entry, key)?;
+                sum += self.worth(entry, row, scratch);
+            }
+            let closed = self.columns.entries[usize::from(entry)].above == start;
+            closed.then_some((std::cmp::Reverse(sum), start))
+        };
+        let candidates = self.columns.by_key[usize::from(first)].iter();
+        candidates
+            .filter_map(sum_round)
+            .min()
+            .map(|(_, start)| start)
+    }
+
+    /// The recursion, from `start` upwards (round the column).
+    fn maximise(&self, start: usize, scratch: &mut Scratch) {
+        let keys = self.column.keys;
+        scratch.scores.clear();
+        scratch.scores.resize(self.columns.entries.len(), 0);
+        scratch.scores_below.clone_from(&scratch.scores);
+        scratch.best.clear();
+        scratch.continued.clear();
+        scratch.rows.clear();
+        let mut below = None;
+        let mut best_below = 0;
+        for row in (start..keys.len()).chain(0..start) {
+            scratch.rows.push(scratch.continued.len());
+            let (mut best, mut best_entry) = (0, NO_BLOCK);
+            for &entry in &self.columns.by_key[usize::from(keys[row])] {
+                let under = self.columns.entries[usize::from(entry)].below;
+                let continuing = match (below, self.columns.entries.get(usize::from(under))) {
+                    (Some(key), Some(lower)) if lower.accepts >> key & 1 == 1 => {
+                        scratch.scores_below[usize::from(under)] + ALONG
+                    }
+                    _ => 0,
+                };
+                let continues = continuing > best_below;
+                let score = continuing.max(best_below) + self.worth(entry, row, scratch);
+                scratch.scores[usize::from(entry)] = score;
+                scratch.continued.push(continues);
+                if best_entry == NO_BLOCK || score > best {
+                    (best, best_entry) = (score, entry);
+                }
+            }
+            scratch.best.push(best_entry);
+            std::mem::swap(&mut scratch.scores, &mut scratch.scores_below);
+            (below, best_below) = (Some(keys[row]), best);
+        }
+    }
+
+    /// Follows the recursion back from its best end, run by run.
+    fn write_back(&self, start: usize, scratch: &Scratch, blocks: &mut [u16]) {
+        let keys = self.column.keys;
+        let mut top = keys.len();
+        while top > 0 {
+            // Down from the best entry of the topmost free row to where its run begins.
+            let mut step = top - 1;
+            let mut entry = scratch.best[step];
+            while self.continues(entry, step, (start + step) % keys.len(), scratch) {
+                entry = self.columns.entries[usize::from(entry)].below;
+                step -= 1;
+            }
+            self.write_run(entry, (start + step) % keys.len(), top - step, blocks);
+            top = step;
+        }
+    }
+
+    /// Whether the best way to an entry continues the entry below.
+    fn continues(&self, entry: u16, step: usize, row: usize, scratch: &Scratch) -> bool {
+        let list = &self.columns.by_key[usize::from(self.column.keys[row])];
+        let position = list.iter().position(|&other| other == entry);
+        position.is_some_and(|position| scratch.continued[scratch.rows[step] + position])
+    }
+
+    /// Writes a run of blocks that starts with an entry at a row.
+    fn write_run(&self, mut entry: u16, row: usize, length: usize, blocks: &mut [u16]) {
+        let end = self.end(row);
+        for step in 0..length {
+            let Some(here) = self.columns.entries.get(usize::from(entry)) else {
+                return;
+            };
+            blocks[(row + step) % self.column.keys.len()] = self.columns.align(here, end);
+            entry = here.above;
+        }
+    }
+
+    /// A row of a cycle of the jumps by the longest runs.
+    fn repeating_start(&self, scratch: &mut Scratch) -> usize {
+        let rows = self.column.keys.len();
+        scratch.visited.clear();
+        scratch.visited.resize(rows, false);
+        let mut start = 0;
+        while !scratch.visited[start] {
+            scratch.visited[start] = true;
+            start = (start + scratch.longest[start] as usize) % rows;
+        }
+        start
     }
 
     /// Fills `scratch.longest` with the longest run at each row of the cyclic column, at
     /// most one turn.
     fn longest_runs(&self, scratch: &mut Scratch) {
-        let rows = self.keys.len();
+        let rows = self.column.keys.len();
         scratch.longest.clear();
         scratch.longest.resize(rows, 0);
-        scratch.runs_above.clear();
-        scratch.runs_above.resize(self.columns.blocks.len(), 0);
-        scratch.runs_here.clone_from(&scratch.runs_above);
+        scratch.runs.clear();
+        scratch.runs.resize(self.columns.entries.len(), 0);
+        scratch.runs_above.clone_from(&scratch.runs);
         // The first turn does not know what follows its last row: its runs end there.
         let mut above = None;
         for row in (0..rows).rev() {
-            scratch.longest[row] = self.runs_at(row, above, rows, scratch);
-            above = Some(self.keys[row]);
+            scratch.longest[row] = self.runs_at(row, above, scratch);
+            above = Some(self.column.keys[row]);
         }
         // The second knows; it may stop below the lowest run that the first one cut.
         for row in (0..rows).rev() {
             let cut = row + scratch.longest[row] as usize >= rows;
-            scratch.longest[row] = self.runs_at(row, above, rows, scratch);
-            above = Some(self.keys[row]);
+            scratch.longest[row] = self.runs_at(row, above, scratch);
+            above = Some(self.column.keys[row]);
             if !cut {
                 break;
             }
@@ -297,17 +430,18 @@ impl Painter<'_> {
     }
 
     /// Runs of every candidate at `row` from those at the row above, whose key is `above`;
-    /// returns the longest.
-    fn runs_at(&self, row: usize, above: Option<u8>, limit: usize, scratch: &mut Scratch) -> u32 {
+    /// returns the longest, at most one turn.
+    fn runs_at(&self, row: usize, above: Option<u8>, scratch: &mut Scratch) -> u32 {
+        let turn = self.column.keys.len() as u32;
         let mut longest = 0;
-        for &entry in &self.columns.by_key[usize::from(self.keys[row])] {
+        for &entry in &self.columns.by_key[usize::from(self.column.keys[row])] {
             let next = above.and_then(|key| self.columns.follow(entry, key));
             let beyond = next.map_or(0, |next| scratch.runs_above[usize::from(next)]);
-            let run = (beyond + 1).min(limit as u32);
-            scratch.runs_here[usize::from(entry)] = run;
+            let run = (beyond + 1).min(turn);
+            scratch.runs[usize::from(entry)] = run;
             longest = longest.max(run);
         }
-        std::mem::swap(&mut scratch.runs_above, &mut scratch.runs_here);
+        std::mem::swap(&mut scratch.runs_above, &mut scratch.runs);
         longest
     }
 }

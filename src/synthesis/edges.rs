@@ -132,6 +132,7 @@ impl EdgeFix {
         };
         let wanted = match rank {
             Rank::Off | Rank::Truncated(0) => return Ok(fix),
+            _ if heights.is_empty() => return Ok(fix),
             Rank::Truncated(rank) => rank as usize,
             Rank::Exact => usize::MAX,
         };

@@ -117,7 +117,7 @@ impl YarnGrid {
             let u = (across - across.floor()) * 2.0 - 1.0;
             let w = (z - height) / self.section[1];
             let u = u / self.section[0];
-            (u * u + w * w < 1.0).then(|| (u, w, slope * 0.5 * thickness))
+            (u * u + w * w < 1.0).then_some((u, w, slope * 0.5 * thickness))
         };
         let warp = try_yarn(at.x, at.y, &|pick| (self.pattern)(end, pick));
         let weft = try_yarn(at.y, at.x, &|end| !(self.pattern)(end, pick));

@@ -1,1 +1,0 @@
-//! The implicit cloth volume.

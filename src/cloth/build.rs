@@ -1,0 +1,342 @@
+//! From a design to its cloth.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+
+use crate::design::{Design, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps};
+use crate::exemplar::{
+    Allowance, BlockMajorants, ExemplarError, ExemplarSet, Pair, VoxelGrid, common_grid, quantise,
+};
+use crate::job::Job;
+use crate::synthesis::{
+    Assignment, Catalogue, EdgeFix, NeighbourBits, Placement, Randomisation, SynthesisError,
+    SynthesisSettings, assign,
+};
+use crate::yarn::YarnRecipe;
+
+/// Every approximation of the cloth volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClothSettings {
+    /// The synthesis's own.
+    pub synthesis: SynthesisSettings,
+    /// Voxel level: 0 is the reference, each further level halves the resolution.
+    pub level: u32,
+    /// Stochastic one-tap filter. Off (crude): nearest voxel.
+    pub tap: bool,
+    /// Shear fibre directions by the slope of the edge fixing. Off (crude): keep them.
+    pub shear: bool,
+}
+
+impl Default for ClothSettings {
+    fn default() -> Self {
+        Self {
+            synthesis: SynthesisSettings::default(),
+            level: 0,
+            tap: true,
+            shear: true,
+        }
+    }
+}
+
+/// Why a cloth could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ClothError {
+    /// The exemplars could not be had.
+    #[error(transparent)]
+    Exemplar(#[from] ExemplarError),
+    /// The synthesis failed.
+    #[error(transparent)]
+    Synthesis(#[from] SynthesisError),
+}
+
+impl From<crate::job::Cancelled> for ClothError {
+    fn from(cancelled: crate::job::Cancelled) -> Self {
+        Self::Synthesis(cancelled.into())
+    }
+}
+
+/// Which yarns of a design are built alike: one recipe a class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct YarnClasses {
+    /// Class of each yarn as a warp; yarns never used as one have class 0.
+    warp: Vec<u16>,
+    /// Class of each yarn as a weft.
+    weft: Vec<u16>,
+    /// Number of weft classes.
+    wefts: u16,
+    /// The pairs of recipes, warp-major.
+    pub pairs: Vec<Pair>,
+    /// Spacing of ends and picks that the exemplars are for, mm.
+    pub pitch: Vec2,
+}
+
+impl YarnClasses {
+    /// Sorts the yarns of a design by family and size, each size within 5 %.
+    pub fn new(design: &Design) -> Self {
+        let classes = |used: Vec<YarnId>| {
+            let mut recipes: Vec<YarnRecipe> = Vec::new();
+            let mut class = vec![0u16; design.yarns().len()];
+            for id in used {
+                let recipe = recipe_of(design.yarn(id));
+                let known = recipes.iter().position(|r| *r == recipe);
+                let index = known.unwrap_or_else(|| {
+                    recipes.push(recipe);
+                    recipes.len() - 1
+                });
+                class[usize::from(id.0)] = index as u16;
+            }
+            (class, recipes)
+        };
+        let (warp, warp_recipes) = classes(used(&design.maps().warp, design));
+        let (weft, weft_recipes) = classes(used(&design.maps().weft, design));
+        let mut pairs = Vec::new();
+        for warp in &warp_recipes {
+            for weft in &weft_recipes {
+                pairs.push(Pair {
+                    warp: warp.clone(),
+                    weft: weft.clone(),
+                });
+            }
+        }
+        let pitch = Vec2::new(
+            quantise(design.sett().ends.mean_pitch_mm()),
+            quantise(design.sett().picks.mean_pitch_mm()),
+        );
+        Self {
+            warp,
+            weft,
+            wefts: weft_recipes.len() as u16,
+            pairs,
+            pitch,
+        }
+    }
+
+    /// The exemplar set of a crossing of these yarns.
+    #[inline]
+    pub fn set(&self, warp: YarnId, weft: YarnId) -> u16 {
+        self.warp[usize::from(warp.0)] * self.wefts + self.weft[usize::from(weft.0)]
+    }
+}
+
+fn recipe_of(yarn: &Yarn) -> YarnRecipe {
+    YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
+}
+
+/// The yarns that a map uses, in order of first use.
+fn used(map: &YarnMap, design: &Design) -> Vec<YarnId> {
+    let mut seen = vec![false; design.yarns().len()];
+    let mut list = Vec::new();
+    let mut see = |id: YarnId| {
+        if !std::mem::replace(&mut seen[usize::from(id.0)], true) {
+            list.push(id);
+        }
+    };
+    match map {
+        YarnMap::Order(order) => order.iter().copied().for_each(&mut see),
+        YarnMap::Crossings(grid) => grid.iter().for_each(&mut see),
+    }
+    list
+}
+
+/// The cloth of a design as an implicit volume.
+#[derive(Clone)]
+pub struct ClothVolume {
+    pub(super) catalogue: Arc<Catalogue>,
+    pub(super) sets: Vec<Arc<ExemplarSet>>,
+    pub(super) classes: YarnClasses,
+    pub(super) edge_fix: Arc<EdgeFix>,
+    pub(super) majorants: Arc<BlockMajorants>,
+    pub(super) assignment: Assignment,
+    pub(super) randomisation: Randomisation,
+    pub(super) lattice: Lattice,
+    pub(super) maps: YarnMaps,
+    pub(super) ends: Positions,
+    pub(super) picks: Positions,
+    pub(super) grid: VoxelGrid,
+    /// Extinction of a voxel wholly inside fibre, by set: warp, weft.
+    pub(super) full: Vec<[f32; 2]>,
+    /// SGGX roughness by yarn.
+    pub(super) alpha: Vec<f32>,
+    /// Single-scattering albedo by yarn.
+    pub(super) albedo: Vec<Vec3>,
+    pub(super) settings: ClothSettings,
+}
+
+impl ClothVolume {
+    /// The grid that the exemplars of a design share.
+    ///
+    /// # Errors
+    /// When a yarn or the sett is not usable.
+    pub fn grid_for(
+        catalogue: &Catalogue,
+        classes: &YarnClasses,
+        settings: &ClothSettings,
+    ) -> Result<VoxelGrid, ExemplarError> {
+        common_grid(catalogue, &classes.pairs, classes.pitch, settings.level)
+    }
+
+    /// Makes the cloth of a design from exemplar sets, one for each pair of `classes`.
+    /// `albedo` holds the single-scattering albedo of each of the design's yarns.
+    ///
+    /// # Errors
+    /// When synthesis fails or the job is cancelled.
+    pub fn new(
+        design: &Design,
+        catalogue: Arc<Catalogue>,
+        classes: YarnClasses,
+        sets: Vec<Arc<ExemplarSet>>,
+        albedo: Vec<Vec3>,
+        settings: ClothSettings,
+        job: &Job,
+    ) -> Result<Self, ClothError> {
+        let SynthesisSettings {
+            method,
+            rank,
+            seed,
+            patch,
+        } = settings.synthesis;
+        let weave = design.weave();
+        let assignment = assign(&weave, design.lattice(), &catalogue, method, seed, job)?;
+        let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
+        let edge_fix = EdgeFix::new(&heights, &catalogue, rank, job)?;
+        job.check()?;
+        let bits = neighbour_bits(&catalogue, design.lattice(), method);
+        let allowance = Allowance {
+            tap: settings.tap,
+            ..Allowance::FULL
+        };
+        let majorants = BlockMajorants::new(&catalogue, &sets, &edge_fix, bits, allowance);
+        let full = sets
+            .iter()
+            .map(|set| [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction))
+            .collect();
+        Ok(Self {
+            grid: sets.first().map_or_else(VoxelGrid::default, |set| set.grid),
+            catalogue,
+            sets,
+            classes,
+            edge_fix: Arc::new(edge_fix),
+            majorants: Arc::new(majorants),
+            assignment,
+            randomisation: Randomisation { seed, patch },
+            lattice: design.lattice(),
+            maps: design.maps().clone(),
+            ends: design.end_positions(),
+            picks: design.pick_positions(),
+            full,
+            alpha: design
+                .yarns()
+                .iter()
+                .map(|yarn| yarn.alpha().clamp(0.01, 1.0))
+                .collect(),
+            albedo,
+            settings,
+        })
+    }
+
+    /// Follows a change of the weave at `cells`: only what depends on them is made anew.
+    ///
+    /// # Errors
+    /// When the weave has another size than the cloth's, or the job is cancelled.
+    pub fn edit(
+        &mut self,
+        weave: &WeavePattern,
+        cells: &[(u32, u32)],
+        job: &Job,
+    ) -> Result<(), ClothError> {
+        self.assignment.edit(weave, &self.catalogue, cells, job)?;
+        Ok(())
+    }
+
+    /// Takes over other colours: no synthesis.
+    pub fn recolour(&mut self, albedo: Vec<Vec3>) {
+        if albedo.len() == self.albedo.len() {
+            self.albedo = albedo;
+        }
+    }
+
+    /// The assignment and its randomisation.
+    pub fn placement(&self) -> Placement<'_> {
+        Placement {
+            catalogue: &self.catalogue,
+            assignment: &self.assignment,
+            randomisation: self.randomisation,
+        }
+    }
+
+    /// The edge fixing.
+    pub fn edge_fix(&self) -> &EdgeFix {
+        &self.edge_fix
+    }
+
+    /// The exemplar sets.
+    pub fn sets(&self) -> &[Arc<ExemplarSet>] {
+        &self.sets
+    }
+
+    /// The exemplar set of a crossing of the endless cloth.
+    #[inline]
+    pub fn set_at(&self, end: i64, pick: i64) -> u16 {
+        self.classes
+            .set(self.maps.warp(end, pick), self.maps.weft(end, pick))
+    }
+
+    /// Where the ends lie.
+    pub fn ends(&self) -> &Positions {
+        &self.ends
+    }
+
+    /// Where the picks lie.
+    pub fn picks(&self) -> &Positions {
+        &self.picks
+    }
+
+    /// Lowest and highest place that may hold matter, mm.
+    pub fn height_range(&self) -> (f32, f32) {
+        let floor = self.floor_mm();
+        (
+            floor,
+            floor + (self.majorants.cells()[2] * 4) as f32 * self.grid.voxel_mm.z,
+        )
+    }
+
+    /// Height of the lowest cell, mm.
+    #[inline]
+    pub(super) fn floor_mm(&self) -> f32 {
+        self.grid.floor_mm() - self.majorants.pad() as f32 * self.grid.voxel_mm.z
+    }
+
+    /// Replaces the majorants: for tests that leave an allowance out.
+    pub fn with_allowance(mut self, allowance: Allowance) -> Self {
+        let bits = neighbour_bits(
+            &self.catalogue,
+            self.lattice,
+            self.settings.synthesis.method,
+        );
+        self.majorants = Arc::new(BlockMajorants::new(
+            &self.catalogue,
+            &self.sets,
+            &self.edge_fix,
+            bits,
+            allowance,
+        ));
+        self
+    }
+}
+
+/// Consistent neighbours may be relied on when every crossing has a consistent candidate.
+fn neighbour_bits(
+    catalogue: &Catalogue,
+    lattice: Lattice,
+    method: crate::synthesis::Method,
+) -> NeighbourBits {
+    let consistent = method != crate::synthesis::Method::Naive
+        && lattice == Lattice::default()
+        && (0..32).all(|key| catalogue.mismatch(key) == 0);
+    if consistent {
+        NeighbourBits::Consistent
+    } else {
+        NeighbourBits::Any
+    }
+}

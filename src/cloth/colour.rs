@@ -1,0 +1,257 @@
+//! The colour a designer picks is the colour the woven cloth shows.
+//!
+//! A thick cloth of single-scattering albedo ω reflects R(ω) = Σ pₙ ωⁿ, where pₙ is the
+//! light that was scattered n times; one run of the tracer gives all pₙ at once. The
+//! curves are measured per family and roughness on plain weave, in a pile of four layers,
+//! lit at 45° from all round and seen at 0°, relative to a white diffuser, and kept in
+//! `presets/reflectance.ron`. Inverting them turns a colour into an albedo.
+
+use std::sync::OnceLock;
+
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::build::ClothVolume;
+use crate::design::{Family, Yarn};
+use crate::job::{Cancelled, Job};
+use crate::render::path::{ByOrder, Path, Plane};
+use crate::render::{Counters, Dark, Random, Ray, Stack, Sun};
+
+/// Nodes of a stored curve, equally spaced in s = √(1−ω) from 0 to 1: R is smooth in s.
+pub const NODES: usize = 25;
+/// Orders of scattering that a measurement keeps.
+const ORDERS: usize = 2048;
+/// Directions of the light round the cloth.
+const AZIMUTHS: usize = 8;
+
+/// Reflectance of thick plain-woven cloth against single-scattering albedo.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReflectanceCurve {
+    /// The yarns' family.
+    pub family: Family,
+    /// SGGX roughness α of the fibres.
+    pub alpha: f32,
+    /// R at s = √(1−ω) = k/24, k = 0..24: falling.
+    pub reflectance: Vec<f32>,
+}
+
+impl ReflectanceCurve {
+    /// R(ω). The domain is 0..=1.
+    pub fn reflectance(&self, albedo: f32) -> f32 {
+        let s = (1.0 - albedo.clamp(0.0, 1.0)).sqrt() * (NODES - 1) as f32;
+        let node = (s as usize).min(NODES - 2);
+        let (a, b) = (self.reflectance[node], self.reflectance[node + 1]);
+        a + (b - a) * (s - node as f32)
+    }
+
+    /// The ω that gives a reflectance, held in 0..=1 where no ω does.
+    pub fn albedo(&self, reflectance: f32) -> f32 {
+        let last = NODES - 1;
+        if !(reflectance > self.reflectance[last]) {
+            return 0.0;
+        }
+        if reflectance >= self.reflectance[0] {
+            return 1.0;
+        }
+        // The curve falls with s: find the nodes that enclose the reflectance.
+        let above = self
+            .reflectance
+            .partition_point(|&r| r > reflectance)
+            .clamp(1, last);
+        let (a, b) = (self.reflectance[above - 1], self.reflectance[above]);
+        let s = (above as f32 - 1.0 + (a - reflectance) / (a - b).max(1e-9)) / last as f32;
+        (1.0 - s * s).clamp(0.0, 1.0)
+    }
+
+    /// Reflectances that some albedo between `surface_share` and 1 gives.
+    pub fn range(&self, surface_share: f32) -> (f32, f32) {
+        (self.reflectance(surface_share), self.reflectance[0])
+    }
+
+    fn mixed(a: &Self, b: &Self, t: f32) -> Self {
+        let reflectance = a
+            .reflectance
+            .iter()
+            .zip(&b.reflectance)
+            .map(|(a, b)| a + (b - a) * t)
+            .collect();
+        Self {
+            family: a.family,
+            alpha: a.alpha + (b.alpha - a.alpha) * t,
+            reflectance,
+        }
+    }
+}
+
+/// Measures the shares pₙ of light scattered n times and makes the curve of them.
+///
+/// `cloth` should be plain weave of one yarn; its own colours do not matter.
+///
+/// # Errors
+/// [`Cancelled`] when the job was.
+pub fn measure(
+    cloth: &ClothVolume,
+    family: Family,
+    alpha: f32,
+    layers: u32,
+    paths: u32,
+    job: &Job,
+) -> Result<ReflectanceCurve, Cancelled> {
+    use rayon::prelude::*;
+    let stack = Stack::new(cloth, layers, Vec2::new(0.37, 0.23));
+    let top = cloth.height_range().1;
+    let patch = Vec2::new(cloth.ends().pitch(0) as f32, cloth.picks().pitch(0) as f32) * 24.0;
+    let batches: Vec<Vec<f64>> = (0..paths.div_ceil(256))
+        .into_par_iter()
+        .map(|batch| {
+            job.check()?;
+            let mut orders = ByOrder(vec![0.0; ORDERS + 1]);
+            let mut counters = Counters::default();
+            for path in 0..256 {
+                let mut random = Random::new(45, u64::from(batch), path);
+                let suns = [lamp(path as usize % AZIMUTHS)];
+                let [x, y] = random.pair();
+                let ray = Ray {
+                    origin: (Vec2::new(x, y) * patch).extend(top + 1.0),
+                    direction: Vec3::NEG_Z,
+                };
+                colour_path(&stack, &suns).trace(ray, &mut orders, &mut random, &mut counters);
+            }
+            Ok(orders.0)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let mut shares = vec![0.0f64; ORDERS + 1];
+    for batch in &batches {
+        for (share, light) in shares.iter_mut().zip(batch) {
+            *share += light / (256.0 * batches.len() as f64);
+        }
+    }
+    let reflectance = (0..NODES)
+        .map(|node| {
+            let s = node as f64 / (NODES - 1) as f64;
+            let albedo = 1.0 - s * s;
+            // Horner: Σ pₙ ωⁿ.
+            shares
+                .iter()
+                .rev()
+                .fold(0.0, |sum, &share| sum * albedo + share) as f32
+        })
+        .collect();
+    Ok(ReflectanceCurve {
+        family,
+        alpha,
+        reflectance,
+    })
+}
+
+/// One of the lamps of the 45°/0° geometry; a white diffuser under it has radiance 1.
+pub fn lamp(azimuth: usize) -> Sun {
+    let (sine, cosine) =
+        (std::f32::consts::TAU * (azimuth as f32 + 0.5) / AZIMUTHS as f32).sin_cos();
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    Sun {
+        towards: Vec3::new(cosine * half, sine * half, half),
+        irradiance: Vec3::splat(std::f32::consts::PI / half),
+        angular_radius: 0.0,
+    }
+}
+
+fn colour_path<'a, S>(scatterer: &'a S, suns: &'a [Sun]) -> Path<'a, S, Dark, true, false> {
+    Path {
+        scatterer,
+        suns,
+        environment: &Dark,
+        turn: Vec3::ONE,
+        plane: Plane {
+            z: 0.0,
+            facing: 1.0,
+            albedo: 0.0,
+        },
+        max_order: ORDERS as u32,
+        roulette_order: u32::MAX,
+        shadow_roulette: 0.0,
+        background: crate::render::Background::Transparent,
+    }
+}
+
+/// The built-in curves.
+pub fn curves() -> &'static [ReflectanceCurve] {
+    static CURVES: OnceLock<Vec<ReflectanceCurve>> = OnceLock::new();
+    CURVES.get_or_init(|| {
+        let text = include_str!("../../presets/reflectance.ron");
+        let curves: Vec<ReflectanceCurve> = ron::from_str(text).unwrap_or_default();
+        curves
+            .into_iter()
+            .filter(|curve| curve.reflectance.len() == NODES)
+            .collect()
+    })
+}
+
+/// The curve of a family at a roughness, between the measured ones.
+pub fn curve(family: Family, alpha: f32) -> Option<ReflectanceCurve> {
+    let mut measured: Vec<&ReflectanceCurve> = curves()
+        .iter()
+        .filter(|curve| curve.family == family)
+        .collect();
+    measured.sort_by(|a, b| a.alpha.total_cmp(&b.alpha));
+    let above = measured.partition_point(|curve| curve.alpha < alpha);
+    match (
+        above.checked_sub(1).and_then(|i| measured.get(i)),
+        measured.get(above),
+    ) {
+        (Some(a), Some(b)) => Some(ReflectanceCurve::mixed(
+            a,
+            b,
+            (alpha - a.alpha) / (b.alpha - a.alpha),
+        )),
+        (Some(end), None) | (None, Some(end)) => Some((*end).clone()),
+        (None, None) => None,
+    }
+}
+
+/// Single-scattering albedo of a yarn (linear RGB): a dyed share and the uncoloured
+/// surface share F, so never below F.
+pub fn albedo(yarn: &Yarn) -> Vec3 {
+    let colour = yarn.colour.to_linear();
+    let share = yarn.surface_share.clamp(0.0, 1.0);
+    let Some(curve) = curve(yarn.family, yarn.alpha()) else {
+        return colour.max(Vec3::splat(share));
+    };
+    Vec3::from_array(
+        colour
+            .to_array()
+            .map(|reflectance| curve.albedo(reflectance).max(share)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_rise_with_albedo_and_invert() {
+        assert!(!curves().is_empty());
+        for curve in curves() {
+            for pair in curve.reflectance.windows(2) {
+                assert!(pair[0] > pair[1], "{:?} α {}", curve.family, curve.alpha);
+            }
+            for i in 1..50 {
+                let albedo = i as f32 / 50.0;
+                let back = curve.albedo(curve.reflectance(albedo));
+                assert!((back - albedo).abs() < 1e-3, "{albedo} became {back}");
+            }
+            assert_eq!(curve.albedo(2.0), 1.0);
+            assert_eq!(curve.albedo(-1.0), 0.0);
+            assert_eq!(curve.albedo(f32::NAN), 0.0);
+        }
+    }
+
+    #[test]
+    fn every_family_has_a_curve_at_every_roughness() {
+        for family in [Family::Cotton, Family::Silk, Family::Wool, Family::Linen] {
+            for alpha in [0.01, 0.08, 0.3, 1.0] {
+                assert!(curve(family, alpha).is_some());
+            }
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! One voxel of a crossing.
+
+use std::cell::Cell;
+
+use glam::Vec3;
+
+use super::build::ClothVolume;
+use crate::render::Voxel;
+use crate::synthesis::{BlockRef, Face, Neighbourhood};
+
+/// A crossing of the endless cloth, made ready for lookups.
+pub(super) struct Crossing {
+    pub end: i64,
+    pub pick: i64,
+    pub block: BlockRef,
+    /// Lower corner, mm.
+    pub corner: [f32; 2],
+    /// Voxels a mm along x and y.
+    pub per_mm: [f32; 2],
+    /// Found when first needed: most crossings are only passed over.
+    around: Cell<Option<Neighbourhood>>,
+}
+
+impl ClothVolume {
+    /// The crossing at (end, pick); `None` where there is no cloth.
+    pub(super) fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
+        let block = self.placement().block(end, pick)?;
+        let [bx, by, _] = self.grid.block;
+        Some(Crossing {
+            end,
+            pick,
+            block: BlockRef {
+                set: self.set_at(end, pick),
+                block,
+            },
+            corner: [self.ends.start(end) as f32, self.picks.start(pick) as f32],
+            per_mm: [
+                bx as f32 / self.ends.pitch(end) as f32,
+                by as f32 / self.picks.pitch(pick) as f32,
+            ],
+            around: Cell::new(None),
+        })
+    }
+
+    fn around(&self, crossing: &Crossing) -> Option<Neighbourhood> {
+        if crossing.around.get().is_none() {
+            let set_at = |end, pick| self.set_at(end, pick);
+            let found = self
+                .placement()
+                .neighbourhood(crossing.end, crossing.pick, set_at);
+            crossing.around.set(found);
+        }
+        crossing.around.get()
+    }
+
+    /// The voxel at a point of a crossing given in voxels (x and y from the crossing's
+    /// corner, z from the exemplar's floor), which may lie just across its border.
+    pub(super) fn voxel_near(&self, crossing: &Crossing, point: Vec3) -> Voxel {
+        let [bx, by, _] = self.grid.block;
+        let (x, y) = (point.x.floor() as i64, point.y.floor() as i64);
+        let (across, along) = (x.div_euclid(bx as i64), y.div_euclid(by as i64));
+        if (across, along) == (0, 0) {
+            return self.voxel_in(crossing, x as usize, y as usize, point.z);
+        }
+        let Some(beside) = self.crossing(crossing.end + across, crossing.pick + along) else {
+            return Voxel::EMPTY;
+        };
+        let (x, y) = (x.rem_euclid(bx as i64), y.rem_euclid(by as i64));
+        self.voxel_in(&beside, x as usize, y as usize, point.z)
+    }
+
+    /// The voxel of stack (x, y) of a crossing at height `z` (voxels).
+    #[inline]
+    fn voxel_in(&self, crossing: &Crossing, x: usize, y: usize, z: f32) -> Voxel {
+        let [bx, by, depth] = self.grid.block;
+        let mut height = z;
+        let weight = front_weight(z / depth as f32);
+        let fixed = !self.edge_fix.is_off();
+        if fixed {
+            let Some(around) = self.around(crossing) else {
+                return Voxel::EMPTY;
+            };
+            height -= self.blended_shift(&around, weight, x, y);
+        }
+        if !(height >= 0.0 && height < depth as f32) {
+            return Voxel::EMPTY;
+        }
+        let place = self.catalogue.place(crossing.block.block);
+        let volume =
+            &self.sets[usize::from(crossing.block.set)].volumes[usize::from(place.exemplar)];
+        let voxel = volume.get(
+            usize::from(place.x) * bx + x,
+            usize::from(place.y) * by + y,
+            height as usize,
+        );
+        if voxel.fill() == 0 {
+            return Voxel::EMPTY;
+        }
+
+        // The yarn byte names a column or row of the exemplar: the same step from this
+        // crossing is an end or pick of the cloth, so a bulging yarn keeps its own colour.
+        let weft = voxel.is_weft();
+        let weave = &self.catalogue.weaves()[usize::from(place.exemplar)];
+        let yarn = if weft {
+            let step = nearest_step(voxel.yarn(), place.y, weave.picks());
+            self.maps.weft(crossing.end, crossing.pick + step)
+        } else {
+            let step = nearest_step(voxel.yarn(), place.x, weave.ends());
+            self.maps.warp(crossing.end + step, crossing.pick)
+        };
+        let mut direction = voxel.direction();
+        if fixed && self.settings.shear {
+            direction = self.sheared(crossing, weight, x, y, direction);
+        }
+        let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
+        Voxel {
+            sigma: f32::from(voxel.fill()) * (1.0 / 255.0) * full,
+            direction,
+            alpha: self.alpha[usize::from(yarn.0)],
+            optics: u32::from(yarn.0),
+        }
+    }
+
+    /// Shift of a stack, blended between the fields of the two faces.
+    #[inline]
+    fn blended_shift(&self, around: &Neighbourhood, front: f32, x: usize, y: usize) -> f32 {
+        let field = |face| self.edge_fix.shift_at(around, face, x, y);
+        if front >= 1.0 {
+            field(Face::Front)
+        } else if front <= 0.0 {
+            field(Face::Back)
+        } else {
+            front * field(Face::Front) + (1.0 - front) * field(Face::Back)
+        }
+    }
+
+    /// A direction sheared by the slope of the shift.
+    fn sheared(
+        &self,
+        crossing: &Crossing,
+        front: f32,
+        x: usize,
+        y: usize,
+        direction: Vec3,
+    ) -> Vec3 {
+        let Some(around) = crossing.around.get() else {
+            return direction;
+        };
+        let [bx, by, _] = self.grid.block;
+        let shift = |x, y| self.blended_shift(&around, front, x, y);
+        let (left, right) = (x.saturating_sub(1), (x + 1).min(bx - 1));
+        let (below, above) = (y.saturating_sub(1), (y + 1).min(by - 1));
+        let mm = self.grid.voxel_mm;
+        let slope_x = (shift(right, y) - shift(left, y)) / (right - left) as f32 * mm.z / mm.x;
+        let slope_y = (shift(x, above) - shift(x, below)) / (above - below) as f32 * mm.z / mm.y;
+        let sheared = direction + Vec3::Z * (slope_x * direction.x + slope_y * direction.y);
+        sheared.try_normalize().unwrap_or(direction)
+    }
+
+    /// The voxel at a point of the cloth (mm), without a filter.
+    pub fn voxel_at(&self, point: Vec3) -> Voxel {
+        let (end, _) = self.ends.locate(f64::from(point.x));
+        let (pick, _) = self.picks.locate(f64::from(point.y));
+        let Some(crossing) = self.crossing(end, pick) else {
+            return Voxel::EMPTY;
+        };
+        let [bx, by, _] = self.grid.block;
+        let local = Vec3::new(
+            ((point.x - crossing.corner[0]) * crossing.per_mm[0]).clamp(0.0, bx as f32 - 0.01),
+            ((point.y - crossing.corner[1]) * crossing.per_mm[1]).clamp(0.0, by as f32 - 0.01),
+            (point.z - self.grid.floor_mm()) / self.grid.voxel_mm.z,
+        );
+        self.voxel_near(&crossing, local)
+    }
+}
+
+/// Weight of the front face's field at a height (fraction of the thickness): the two
+/// fields are blended over the middle third.
+#[inline]
+fn front_weight(fraction: f32) -> f32 {
+    (3.0 * fraction - 1.0).clamp(0.0, 1.0)
+}
+
+/// Steps from column (or row) `from` to `to` of a repeat of `period`, the short way.
+#[inline]
+fn nearest_step(to: u8, from: u16, period: u32) -> i64 {
+    let period = i64::from(period);
+    let step = (i64::from(to) - i64::from(from)).rem_euclid(period);
+    if 2 * step > period {
+        step - period
+    } else {
+        step
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn yarns_are_counted_the_short_way_round() {
+        assert_eq!(nearest_step(4, 0, 5), -1);
+        assert_eq!(nearest_step(1, 0, 5), 1);
+        assert_eq!(nearest_step(3, 3, 5), 0);
+        assert_eq!(nearest_step(0, 4, 5), 1);
+    }
+}

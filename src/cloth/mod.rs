@@ -1,0 +1,17 @@
+//! The implicit cloth volume: position → voxel and majorant. Zhao 2012 §5.5.
+//!
+//! Nothing is stored per voxel of cloth. A position is located among the ends and picks,
+//! the crossing's block is looked up in the assignment and moved by the randomisation,
+//! the edge fixing shifts it in z, and the exemplar's voxel is read. Which yarn it is, and
+//! so its colour and gloss, is looked up in the design's maps at that moment: recolouring
+//! never makes a new assignment.
+//!
+//! [`ClothVolume`] is a [`Medium`](crate::render::Medium) like any dense grid.
+
+mod build;
+pub mod colour;
+mod lookup;
+mod walk;
+
+pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
+pub use walk::ClothWalk;

@@ -1,0 +1,323 @@
+//! Exemplar sets on disk: kept by content, rebuilt when damaged, bounded.
+//!
+//! A set's file is named by the hash of everything that it is made from. It ends with
+//! the hash of all bytes before it, so that a damaged or half-written file is found out
+//! and built anew. The least recently used files give way when the folder grows too large.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use super::bricks::{BrickVolume, PackedVoxel};
+use super::set::{ExemplarError, ExemplarSet, Pair};
+use super::voxelise::VoxelGrid;
+use crate::job::Job;
+use crate::synthesis::{Catalogue, EdgeHeights};
+
+/// Changes whenever sets built from the same recipe change.
+const FORMAT: u32 = 1;
+const MAGIC: &[u8; 8] = b"pickglas";
+/// Bytes that the folder may hold.
+const LIMIT: u64 = 4 << 30;
+
+/// Where exemplar sets come from: the user's cache folder, or built on the spot.
+#[derive(Debug, Clone)]
+pub struct ExemplarStore {
+    folder: Option<PathBuf>,
+    limit: u64,
+}
+
+impl ExemplarStore {
+    /// The store in the user's own cache folder (`PICKGLASS_CACHE` names another one).
+    pub fn user() -> Self {
+        let folder = std::env::var_os("PICKGLASS_CACHE")
+            .map(PathBuf::from)
+            .or_else(|| {
+                let folders = directories::ProjectDirs::from("", "", "pickglass")?;
+                Some(folders.cache_dir().join("exemplars"))
+            });
+        Self {
+            folder,
+            limit: LIMIT,
+        }
+    }
+
+    /// A store in a folder of at most `limit` bytes.
+    pub fn at(folder: impl Into<PathBuf>, limit: u64) -> Self {
+        Self {
+            folder: Some(folder.into()),
+            limit,
+        }
+    }
+
+    /// A store that keeps nothing.
+    pub fn none() -> Self {
+        Self {
+            folder: None,
+            limit: 0,
+        }
+    }
+
+    /// The set of a pair of yarns on a grid: read if it is there and whole, else built and
+    /// kept. A cache that cannot be written is no error: the set is built again next time.
+    ///
+    /// # Errors
+    /// When the set cannot be built or the job is cancelled.
+    pub fn get(
+        &self,
+        catalogue: &Catalogue,
+        pair: &Pair,
+        grid: VoxelGrid,
+        job: &Job,
+    ) -> Result<Arc<ExemplarSet>, ExemplarError> {
+        let path = self
+            .folder
+            .as_ref()
+            .map(|folder| folder.join(file_name(catalogue, pair, &grid)));
+        if let Some(path) = &path
+            && let Some(set) = read(path, catalogue, pair, grid)
+        {
+            // Reading is using: the oldest file is the first to go.
+            if let Ok(file) = File::options().append(true).open(path) {
+                let _ = file.set_modified(SystemTime::now());
+            }
+            return Ok(Arc::new(set));
+        }
+        let set = ExemplarSet::build(catalogue, pair, grid, job)?;
+        if let (Some(folder), Some(path)) = (&self.folder, &path) {
+            if let Err(error) = write(folder, path, &set) {
+                log::warn!("exemplars are not kept in {}: {error}", folder.display());
+            }
+            self.make_room(path);
+        }
+        Ok(Arc::new(set))
+    }
+
+    /// Removes the least recently used files beyond the limit, never `keep`.
+    fn make_room(&self, keep: &Path) {
+        let Some(Ok(entries)) = self.folder.as_ref().map(fs::read_dir) else {
+            return;
+        };
+        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries
+            .flatten()
+            .filter(|entry| entry.path().extension().is_some_and(|e| e == "exemplars"))
+            .filter_map(|entry| {
+                let metadata = entry.metadata().ok()?;
+                Some((metadata.modified().ok()?, metadata.len(), entry.path()))
+            })
+            .collect();
+        files.sort();
+        let mut total: u64 = files.iter().map(|file| file.1).sum();
+        for (_, length, path) in files {
+            if total > self.limit && path != keep && fs::remove_file(&path).is_ok() {
+                total -= length;
+            }
+        }
+    }
+}
+
+fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&FORMAT.to_le_bytes());
+    // Recipes are plain numbers: their debug form names every one of them exactly.
+    hasher.update(format!("{pair:?} {grid:?}").as_bytes());
+    for weave in catalogue.weaves() {
+        hasher.update(format!("{}x{}:", weave.ends(), weave.picks()).as_bytes());
+        for pick in 0..weave.picks() {
+            for end in 0..weave.ends() {
+                hasher.update(&[u8::from(weave.get(end, pick))]);
+            }
+        }
+    }
+    // Code changes what a recipe gives: a small part of the set stands for all of it.
+    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+    format!("{}.exemplars", &hasher.finalize().to_hex()[..32])
+}
+
+/// Writes through a hasher.
+struct Hashed<W> {
+    inner: W,
+    hasher: blake3::Hasher,
+}
+
+impl<W: Write> Hashed<W> {
+    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.hasher.update(bytes);
+        self.inner.write_all(bytes)
+    }
+
+    fn put_list<T: bytemuck::Pod>(&mut self, list: &[T]) -> std::io::Result<()> {
+        self.put(&(list.len() as u64).to_le_bytes())?;
+        self.put(bytemuck::cast_slice(list))
+    }
+}
+
+fn write(folder: &Path, path: &Path, set: &ExemplarSet) -> std::io::Result<()> {
+    fs::create_dir_all(folder)?;
+    let temporary = tempfile::NamedTempFile::new_in(folder)?;
+    let mut out = Hashed {
+        inner: BufWriter::new(temporary),
+        hasher: blake3::Hasher::new(),
+    };
+    out.put(MAGIC)?;
+    let heights = &set.heights;
+    for list in [&heights.left, &heights.right, &heights.bottom, &heights.top] {
+        out.put_list(list)?;
+    }
+    out.put(&(set.volumes.len() as u64).to_le_bytes())?;
+    for volume in &set.volumes {
+        let (size, index, voxels) = volume.parts();
+        out.put_list(&size.map(|n| n as u32))?;
+        out.put_list(index)?;
+        out.put_list(voxels)?;
+    }
+    let hash = out.hasher.finalize();
+    out.inner.write_all(hash.as_bytes())?;
+    let temporary = out
+        .inner
+        .into_inner()
+        .map_err(std::io::IntoInnerError::into_error)?;
+    temporary.persist(path)?;
+    Ok(())
+}
+
+/// Takes lists off a file's bytes.
+struct Parts<'a>(&'a [u8]);
+
+impl Parts<'_> {
+    fn count(&mut self) -> Option<usize> {
+        let (count, rest) = self.0.split_first_chunk::<8>()?;
+        self.0 = rest;
+        usize::try_from(u64::from_le_bytes(*count)).ok()
+    }
+
+    fn list<T: bytemuck::Pod>(&mut self) -> Option<Vec<T>> {
+        let bytes = self.count()?.checked_mul(size_of::<T>())?;
+        let (list, rest) = self.0.split_at_checked(bytes)?;
+        self.0 = rest;
+        Some(bytemuck::pod_collect_to_vec(list))
+    }
+}
+
+/// The set in a file, or `None` when there is none or it is damaged.
+fn read(path: &Path, catalogue: &Catalogue, pair: &Pair, grid: VoxelGrid) -> Option<ExemplarSet> {
+    let bytes = fs::read(path).ok()?;
+    let (content, hash) = bytes.split_last_chunk::<32>()?;
+    if blake3::hash(content).as_bytes() != hash || !content.starts_with(MAGIC) {
+        log::warn!("{} is damaged and is built again", path.display());
+        return None;
+    }
+    let mut parts = Parts(&content[MAGIC.len()..]);
+    let mut heights = EdgeHeights::flat(catalogue.blocks(), grid.block[0], grid.block[1]);
+    for list in [
+        &mut heights.left,
+        &mut heights.right,
+        &mut heights.bottom,
+        &mut heights.top,
+    ] {
+        let stored = parts.list::<f32>()?;
+        if stored.len() != list.len() {
+            return None;
+        }
+        *list = stored;
+    }
+    let count = parts.count()?;
+    if count != catalogue.exemplars() {
+        return None;
+    }
+    let mut volumes = Vec::with_capacity(count);
+    for _ in 0..count {
+        let size: [u32; 3] = parts.list::<u32>()?.try_into().ok()?;
+        let index = parts.list::<u32>()?;
+        let voxels = parts.list::<PackedVoxel>()?;
+        volumes.push(BrickVolume::from_parts(
+            size.map(|n| n as usize),
+            index,
+            voxels,
+        )?);
+    }
+    parts.0.is_empty().then_some(ExemplarSet {
+        pair: pair.clone(),
+        grid,
+        volumes,
+        heights,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::Family;
+    use crate::exemplar::common_grid;
+    use crate::yarn::YarnRecipe;
+
+    fn small() -> (Catalogue, Pair, VoxelGrid) {
+        let catalogue = Catalogue::paper();
+        let recipe = YarnRecipe::family(Family::Cotton, 0.3);
+        let pair = Pair {
+            warp: recipe.clone(),
+            weft: recipe,
+        };
+        let pairs = [pair.clone()];
+        let grid = common_grid(&catalogue, &pairs, glam::Vec2::splat(0.4), 3).unwrap();
+        (catalogue, pair, grid)
+    }
+
+    fn only_file(folder: &Path) -> PathBuf {
+        fs::read_dir(folder)
+            .unwrap()
+            .next()
+            .unwrap()
+            .unwrap()
+            .path()
+    }
+
+    #[test]
+    fn a_set_comes_back_as_it_was_and_damage_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = ExemplarStore::at(folder.path(), LIMIT);
+        let (catalogue, pair, grid) = small();
+        let built = store.get(&catalogue, &pair, grid, &Job::new()).unwrap();
+        let path = only_file(folder.path());
+        let read_back = read(&path, &catalogue, &pair, grid).unwrap();
+        assert!(built.volumes == read_back.volumes && built.heights == read_back.heights);
+
+        // One bit anywhere, or a cut, and the file is not used but replaced.
+        let whole = fs::read(&path).unwrap();
+        for at in [0, 9, whole.len() / 2, whole.len() - 1] {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 4;
+            fs::write(&path, &damaged).unwrap();
+            assert!(read(&path, &catalogue, &pair, grid).is_none(), "byte {at}");
+        }
+        fs::write(&path, &whole[..whole.len() / 3]).unwrap();
+        assert!(read(&path, &catalogue, &pair, grid).is_none());
+        store.get(&catalogue, &pair, grid, &Job::new()).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), whole);
+    }
+
+    #[test]
+    fn the_folder_is_bounded_and_the_newest_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = ExemplarStore::at(folder.path(), 1);
+        let (catalogue, pair, grid) = small();
+        store.get(&catalogue, &pair, grid, &Job::new()).unwrap();
+        let first = only_file(folder.path());
+        let thin = Pair {
+            warp: YarnRecipe::family(Family::Linen, 0.3),
+            ..pair
+        };
+        store.get(&catalogue, &thin, grid, &Job::new()).unwrap();
+        assert!(!first.exists());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_no_error() {
+        let (catalogue, pair, grid) = small();
+        let store = ExemplarStore::at("/proc/none", LIMIT);
+        assert!(store.get(&catalogue, &pair, grid, &Job::new()).is_ok());
+    }
+}

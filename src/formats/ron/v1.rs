@@ -1,0 +1,615 @@
+//! Version 1 of the design document.
+//!
+//! These types are what a file says and nothing else: they never change once released,
+//! while the design's own types may.
+
+use serde::{Deserialize, Serialize};
+
+use super::Fault;
+use super::image::{read_map, read_pattern, write_map, write_pattern};
+use crate::design::{
+    Corrections, Density, Design, Draft, Family, Fill, Filled, FirstEnd, FirstPick, ForeignSection,
+    Grid, Lattice, Lifting, MAX_CROSSINGS, Origin, Region, Regions, Repeat, Sett, Shed, Srgb,
+    StatedThreads, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps, check_size,
+};
+
+#[derive(Serialize, Deserialize)]
+pub(super) struct Document {
+    pickglass: u32,
+    design: DesignV1,
+}
+
+#[derive(Serialize, Deserialize)]
+struct DesignV1 {
+    name: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
+    ends: u32,
+    picks: u32,
+    structure: StructureV1,
+    yarns: Vec<YarnV1>,
+    warp: MapV1,
+    weft: MapV1,
+    sett: SettV1,
+    #[serde(default)]
+    across: RepeatV1,
+    #[serde(default)]
+    along: RepeatV1,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    origin: Option<OriginV1>,
+}
+
+/// A PNG in base64.
+type Image = String;
+
+#[derive(Serialize, Deserialize)]
+enum StructureV1 {
+    Pattern(Image),
+    Weave(FillV1),
+    Draft(DraftV1),
+    Regions(RegionsV1),
+}
+
+#[derive(Serialize, Deserialize)]
+enum FillV1 {
+    Notation(String),
+    Drawn { ends: u32, picks: u32, image: Image },
+}
+
+/// Sets of shafts or treadles counted from 1: `1 2 3,4 -` (`-` = none).
+type Sets = String;
+
+#[derive(Serialize, Deserialize)]
+struct DraftV1 {
+    shafts: u32,
+    treadles: u32,
+    rising: bool,
+    threading: Sets,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tieup: Option<Sets>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    treadling: Option<Sets>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    liftplan: Option<Sets>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct RegionsV1 {
+    map: Image,
+    palette: Vec<RegionV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    corrections: Option<CorrectionsV1>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct RegionV1 {
+    name: String,
+    fill: FillV1,
+    #[serde(default)]
+    origin: (i32, i32),
+}
+
+#[derive(Serialize, Deserialize)]
+struct CorrectionsV1 {
+    mask: Image,
+    value: Image,
+}
+
+#[derive(Serialize, Deserialize)]
+struct YarnV1 {
+    name: String,
+    colour: String,
+    family: String,
+    surface_share: f32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gloss: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    diameter_mm: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tex: Option<f32>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum MapV1 {
+    /// Yarn numbers from 0, `0*20 1*8`.
+    Order(String),
+    Crossings(Image),
+}
+
+#[derive(Serialize, Deserialize)]
+struct SettV1 {
+    ends_per_cm: f32,
+    picks_per_cm: f32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    end_pitches_mm: Option<Vec<f32>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pick_pitches_mm: Option<Vec<f32>>,
+    #[serde(default)]
+    assumed: bool,
+}
+
+#[derive(Serialize, Deserialize, Default)]
+enum RepeatV1 {
+    #[default]
+    Straight,
+    Dropped(u32),
+    Once,
+}
+
+#[derive(Serialize, Deserialize, Default)]
+#[serde(default)]
+struct OriginV1 {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    program: Option<String>,
+    first_end_right: bool,
+    first_pick_top: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ends: Option<StatedV1>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picks: Option<StatedV1>,
+    palette: Vec<String>,
+    sections: Vec<SectionV1>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct StatedV1 {
+    unit: String,
+    #[serde(default)]
+    spacing: Option<f32>,
+    #[serde(default)]
+    thickness: Option<f32>,
+    #[serde(default)]
+    spacings: Vec<(u32, f32)>,
+    #[serde(default)]
+    thicknesses: Vec<(u32, f32)>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct SectionV1 {
+    name: String,
+    lines: Vec<String>,
+}
+
+pub(super) fn parse(text: &str) -> Result<Document, ::ron::error::SpannedError> {
+    ::ron::Options::default()
+        .with_recursion_limit(32)
+        .from_str(text)
+}
+
+pub(super) fn print(document: &Document) -> Result<String, String> {
+    let style = ::ron::ser::PrettyConfig::new()
+        .compact_arrays(false)
+        .depth_limit(5);
+    let text = ::ron::Options::default()
+        .to_string_pretty(document, style)
+        .map_err(|error| error.to_string())?;
+    Ok(text + "\n")
+}
+
+// Reading.
+
+pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
+    let file = document.design;
+    let (ends, picks) = (file.ends, file.picks);
+    check_size(u64::from(ends), u64::from(picks)).map_err(|error| Fault::new("size", error))?;
+    let structure = structure(file.structure, ends, picks)?;
+    if structure.size() != (ends, picks) {
+        let (found, lifts) = structure.size();
+        let problem = format!("{ends} × {picks} are declared, the weave has {found} × {lifts}");
+        return Err(Fault::new("size", problem));
+    }
+    let yarns = file
+        .yarns
+        .into_iter()
+        .map(yarn)
+        .collect::<Result<Vec<_>, _>>()?;
+    let maps = YarnMaps {
+        warp: map("warp", file.warp, ends, picks)?,
+        weft: map("weft", file.weft, ends, picks)?,
+    };
+    let density = |per_cm, pitches_mm| Density { per_cm, pitches_mm };
+    let sett = Sett {
+        ends: density(file.sett.ends_per_cm, file.sett.end_pitches_mm),
+        picks: density(file.sett.picks_per_cm, file.sett.pick_pitches_mm),
+        assumed: file.sett.assumed,
+    };
+    let lattice = Lattice {
+        across: repeat(file.across),
+        along: repeat(file.along),
+    };
+    let mut design = Design::new(file.name, structure, yarns, maps, sett)?.with_lattice(lattice)?;
+    design.notes = file.notes;
+    if let Some(found) = file.origin {
+        design.origin = origin(found)?;
+    }
+    Ok(design)
+}
+
+fn repeat(found: RepeatV1) -> Repeat {
+    match found {
+        RepeatV1::Straight => Repeat::Straight,
+        RepeatV1::Dropped(by) => Repeat::Dropped(by),
+        RepeatV1::Once => Repeat::None,
+    }
+}
+
+fn structure(found: StructureV1, ends: u32, picks: u32) -> Result<Structure, Fault> {
+    let pattern = |place, image: &str| {
+        read_pattern(image, ends, picks).map_err(|problem| Fault::new(place, problem))
+    };
+    Ok(match found {
+        StructureV1::Pattern(image) => Structure::Pattern(pattern("weave", &image)?),
+        StructureV1::Weave(found) => {
+            let filled = Filled::new(fill("weave", found)?, ends, picks);
+            Structure::Weave(filled.map_err(|error| Fault::new("weave", error))?)
+        }
+        StructureV1::Draft(found) => Structure::Draft(draft(found, ends, picks)?),
+        StructureV1::Regions(found) => {
+            let map = read_map(&found.map, ends, picks);
+            let map = map.map_err(|problem| Fault::new("regions", problem))?;
+            let mut palette = Vec::new();
+            for region in found.palette {
+                palette.push(Region {
+                    name: region.name,
+                    fill: fill("region", region.fill)?,
+                    origin: region.origin,
+                });
+            }
+            let corrections = match found.corrections {
+                None => None,
+                Some(found) => {
+                    let mask = pattern("corrections", &found.mask)?;
+                    let value = pattern("corrections", &found.value)?;
+                    let both = Corrections::new(mask, value);
+                    Some(both.map_err(|error| Fault::new("corrections", error))?)
+                }
+            };
+            let regions = Regions::new(map, palette, corrections);
+            Structure::Regions(regions.map_err(|error| Fault::new("regions", error))?)
+        }
+    })
+}
+
+fn fill(place: &'static str, found: FillV1) -> Result<Fill, Fault> {
+    match found {
+        FillV1::Notation(notation) => {
+            Fill::by_notation(&notation).map_err(|error| Fault::new(place, error))
+        }
+        FillV1::Drawn { ends, picks, image } => read_pattern(&image, ends, picks)
+            .map(Fill::drawn)
+            .map_err(|problem| Fault::new(place, problem)),
+    }
+}
+
+/// Shafts and treadles are refused above this; no loom has so many.
+const MAX_SHAFTS: u32 = 100_000;
+
+/// Reads sets; as many as `count` unless that is `None`.
+fn sets(place: &'static str, text: &str, count: Option<u32>) -> Result<Ties, Fault> {
+    let mut ties = Ties::default();
+    let mut set = Vec::new();
+    for word in text.split_whitespace() {
+        set.clear();
+        for member in word.split(',').filter(|_| word != "-") {
+            match member.parse::<u32>() {
+                Ok(member) if (1..=MAX_SHAFTS).contains(&member) => set.push(member - 1),
+                _ => {
+                    let word: String = word.chars().take(40).collect();
+                    let problem = format!("expected numbers from 1 or -, found \"{word}\"");
+                    return Err(Fault::new(place, problem));
+                }
+            }
+        }
+        ties.push(&set);
+    }
+    match count {
+        Some(count) if ties.len() != count as usize => {
+            let problem = format!("expected {count} entries, found {}", ties.len());
+            Err(Fault::new(place, problem))
+        }
+        _ => Ok(ties),
+    }
+}
+
+fn draft(found: DraftV1, ends: u32, picks: u32) -> Result<Draft, Fault> {
+    if found.shafts > MAX_SHAFTS || found.treadles > MAX_SHAFTS {
+        let problem = format!("expected at most {MAX_SHAFTS} shafts and treadles");
+        return Err(Fault::new("draft", problem));
+    }
+    let threading = sets("threading", &found.threading, Some(ends))?;
+    let lifting = match (found.tieup, found.treadling, found.liftplan) {
+        (Some(tieup), Some(treadling), None) => Lifting::Treadled {
+            tieup: sets("tie-up", &tieup, None)?,
+            treadling: sets("treadling", &treadling, Some(picks))?,
+        },
+        (None, None, Some(plan)) => Lifting::LiftPlan(sets("lift plan", &plan, Some(picks))?),
+        _ => {
+            let problem = "expected either tieup and treadling, or liftplan";
+            return Err(Fault::new("draft", problem));
+        }
+    };
+    let shed = if found.rising {
+        Shed::Rising
+    } else {
+        Shed::Sinking
+    };
+    Draft::new(found.shafts, found.treadles, shed, threading, lifting)
+        .map_err(|error| Fault::new("draft", error))
+}
+
+fn colour(place: &'static str, text: &str) -> Result<Srgb, Fault> {
+    text.parse().map_err(|error| Fault::new(place, error))
+}
+
+fn yarn(found: YarnV1) -> Result<Yarn, Fault> {
+    let family: Result<Family, _> = found.family.parse();
+    Ok(Yarn {
+        colour: colour("yarn", &found.colour)?,
+        family: family.map_err(|error| Fault::new("yarn", error))?,
+        name: found.name,
+        surface_share: found.surface_share,
+        gloss: found.gloss,
+        diameter_mm: found.diameter_mm,
+        tex: found.tex,
+    })
+}
+
+fn map(place: &'static str, found: MapV1, ends: u32, picks: u32) -> Result<YarnMap, Fault> {
+    match found {
+        MapV1::Order(text) => Ok(YarnMap::Order(order(place, &text)?)),
+        MapV1::Crossings(image) => {
+            let numbers =
+                read_map(&image, ends, picks).map_err(|problem| Fault::new(place, problem))?;
+            let ids = Grid::from_fn(ends, picks, |end, pick| YarnId(numbers.get(end, pick)));
+            let ids = ids.map_err(|error| Fault::new(place, error))?;
+            Ok(YarnMap::Crossings(ids))
+        }
+    }
+}
+
+/// The longest yarn order a file may ask for.
+const MAX_ORDER: usize = 1 << 20;
+
+fn order(place: &'static str, text: &str) -> Result<Vec<YarnId>, Fault> {
+    let mut order = Vec::new();
+    for word in text.split_whitespace() {
+        let (yarn, count) = word.split_once('*').unwrap_or((word, "1"));
+        let (Ok(yarn), Ok(count)) = (yarn.parse::<u16>(), count.parse::<usize>()) else {
+            let word: String = word.chars().take(40).collect();
+            let problem = format!("expected yarn*count, for instance 0*20, found \"{word}\"");
+            return Err(Fault::new(place, problem));
+        };
+        if count > MAX_ORDER - order.len() {
+            let problem = format!("expected an order of at most {MAX_ORDER} threads");
+            return Err(Fault::new(place, problem));
+        }
+        order.extend(std::iter::repeat_n(YarnId(yarn), count));
+    }
+    Ok(order)
+}
+
+fn origin(found: OriginV1) -> Result<Origin, Fault> {
+    Ok(Origin {
+        program: found.program,
+        first_end: if found.first_end_right {
+            FirstEnd::Right
+        } else {
+            FirstEnd::Left
+        },
+        first_pick: if found.first_pick_top {
+            FirstPick::Top
+        } else {
+            FirstPick::Bottom
+        },
+        sections: found
+            .sections
+            .into_iter()
+            .map(|SectionV1 { name, lines }| ForeignSection { name, lines })
+            .collect(),
+        ends: found.ends.map(stated).transpose()?,
+        picks: found.picks.map(stated).transpose()?,
+        palette: found
+            .palette
+            .iter()
+            .map(|text| colour("palette", text))
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+fn stated(found: StatedV1) -> Result<StatedThreads, Fault> {
+    let usual = [found.spacing, found.thickness].into_iter().flatten();
+    let single = found.spacings.iter().chain(&found.thicknesses);
+    let mut lengths = usual.chain(single.clone().map(|&(_, length)| length));
+    if !lengths.all(|length| length.is_finite() && length > 0.0) {
+        return Err(Fault::new("origin", "expected spacings above 0"));
+    }
+    if single
+        .into_iter()
+        .any(|&(thread, _)| u64::from(thread) >= MAX_CROSSINGS)
+    {
+        return Err(Fault::new("origin", "expected threads of the design"));
+    }
+    Ok(StatedThreads {
+        unit: found.unit,
+        spacing: found.spacing,
+        thickness: found.thickness,
+        spacings: found.spacings,
+        thicknesses: found.thicknesses,
+    })
+}
+
+// Writing.
+
+pub(super) fn of_design(design: &Design) -> Result<Document, String> {
+    let lattice = design.lattice();
+    let sett = design.sett();
+    let file = DesignV1 {
+        name: design.name.clone(),
+        notes: design.notes.clone(),
+        ends: design.ends(),
+        picks: design.picks(),
+        structure: of_structure(design.structure())?,
+        yarns: design.yarns().iter().map(of_yarn).collect(),
+        warp: of_map(&design.maps().warp)?,
+        weft: of_map(&design.maps().weft)?,
+        sett: SettV1 {
+            ends_per_cm: sett.ends.per_cm,
+            picks_per_cm: sett.picks.per_cm,
+            end_pitches_mm: sett.ends.pitches_mm.clone(),
+            pick_pitches_mm: sett.picks.pitches_mm.clone(),
+            assumed: sett.assumed,
+        },
+        across: of_repeat(lattice.across),
+        along: of_repeat(lattice.along),
+        origin: (design.origin != Origin::default()).then(|| of_origin(&design.origin)),
+    };
+    Ok(Document {
+        pickglass: 1,
+        design: file,
+    })
+}
+
+fn of_repeat(repeat: Repeat) -> RepeatV1 {
+    match repeat {
+        Repeat::Straight => RepeatV1::Straight,
+        Repeat::Dropped(by) => RepeatV1::Dropped(by),
+        Repeat::None => RepeatV1::Once,
+    }
+}
+
+fn of_structure(structure: &Structure) -> Result<StructureV1, String> {
+    Ok(match structure {
+        Structure::Pattern(pattern) => StructureV1::Pattern(write_pattern(pattern)?),
+        Structure::Weave(filled) => StructureV1::Weave(of_fill(filled.fill())?),
+        Structure::Draft(draft) => StructureV1::Draft(of_draft(draft)),
+        Structure::Regions(regions) => StructureV1::Regions(RegionsV1 {
+            map: write_map(regions.map())?,
+            palette: regions
+                .palette()
+                .iter()
+                .map(|region| {
+                    Ok(RegionV1 {
+                        name: region.name.clone(),
+                        fill: of_fill(&region.fill)?,
+                        origin: region.origin,
+                    })
+                })
+                .collect::<Result<_, String>>()?,
+            corrections: match regions.corrections() {
+                None => None,
+                Some(found) => Some(CorrectionsV1 {
+                    mask: write_pattern(found.mask())?,
+                    value: write_pattern(found.value())?,
+                }),
+            },
+        }),
+    })
+}
+
+fn of_fill(fill: &Fill) -> Result<FillV1, String> {
+    match fill.notation() {
+        Some(notation) => Ok(FillV1::Notation(notation.to_owned())),
+        None => drawn(fill.pattern()),
+    }
+}
+
+fn drawn(pattern: &WeavePattern) -> Result<FillV1, String> {
+    Ok(FillV1::Drawn {
+        ends: pattern.ends(),
+        picks: pattern.picks(),
+        image: write_pattern(pattern)?,
+    })
+}
+
+fn of_sets(ties: &Ties) -> Sets {
+    let words: Vec<String> = ties
+        .iter()
+        .map(|set| match set {
+            [] => "-".to_owned(),
+            set => {
+                let members: Vec<String> = set.iter().map(|m| (m + 1).to_string()).collect();
+                members.join(",")
+            }
+        })
+        .collect();
+    words.join(" ")
+}
+
+fn of_draft(draft: &Draft) -> DraftV1 {
+    let (tieup, treadling, liftplan) = match draft.lifting() {
+        Lifting::Treadled { tieup, treadling } => {
+            (Some(of_sets(tieup)), Some(of_sets(treadling)), None)
+        }
+        Lifting::LiftPlan(plan) => (None, None, Some(of_sets(plan))),
+    };
+    DraftV1 {
+        shafts: draft.shafts(),
+        treadles: draft.treadles(),
+        rising: draft.shed() == Shed::Rising,
+        threading: of_sets(draft.threading()),
+        tieup,
+        treadling,
+        liftplan,
+    }
+}
+
+fn of_yarn(yarn: &Yarn) -> YarnV1 {
+    YarnV1 {
+        name: yarn.name.clone(),
+        colour: yarn.colour.to_string(),
+        family: yarn.family.name().to_owned(),
+        surface_share: yarn.surface_share,
+        gloss: yarn.gloss,
+        diameter_mm: yarn.diameter_mm,
+        tex: yarn.tex,
+    }
+}
+
+fn of_map(map: &YarnMap) -> Result<MapV1, String> {
+    match map {
+        YarnMap::Order(order) => {
+            let mut words = Vec::new();
+            for run in order.chunk_by(|a, b| a == b) {
+                words.push(match run.len() {
+                    1 => run[0].0.to_string(),
+                    count => format!("{}*{count}", run[0].0),
+                });
+            }
+            Ok(MapV1::Order(words.join(" ")))
+        }
+        YarnMap::Crossings(grid) => {
+            let numbers =
+                Grid::from_fn(grid.ends(), grid.picks(), |end, pick| grid.get(end, pick).0);
+            let numbers = numbers.map_err(|error| error.to_string())?;
+            Ok(MapV1::Crossings(write_map(&numbers)?))
+        }
+    }
+}
+
+fn of_origin(origin: &Origin) -> OriginV1 {
+    let stated = |found: &Option<StatedThreads>| {
+        found.as_ref().map(|found| StatedV1 {
+            unit: found.unit.clone(),
+            spacing: found.spacing,
+            thickness: found.thickness,
+            spacings: found.spacings.clone(),
+            thicknesses: found.thicknesses.clone(),
+        })
+    };
+    OriginV1 {
+        program: origin.program.clone(),
+        first_end_right: origin.first_end == FirstEnd::Right,
+        first_pick_top: origin.first_pick == FirstPick::Top,
+        ends: stated(&origin.ends),
+        picks: stated(&origin.picks),
+        palette: origin.palette.iter().map(Srgb::to_string).collect(),
+        sections: origin
+            .sections
+            .iter()
+            .map(|section| SectionV1 {
+                name: section.name.clone(),
+                lines: section.lines.clone(),
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,626 @@
+//! A WIF becomes a design.
+
+use super::text::{self, Section, bare, boolean, same, shorten};
+use super::threads::{self, Direction, Spacing};
+use super::{DEFAULT_SPACING_CM, MAX_SHAFTS, MAX_THREADS, WifError, colours};
+use crate::design::{
+    Design, Draft, Family, ForeignSection, Lifting, Origin, Shed, Structure, Ties, YarnMaps,
+    check_size, usual_sett,
+};
+use crate::formats::{Imported, LoadOptions};
+
+/// The sections a design has a place for; all others are kept word for word.
+const OWN: [&str; 17] = [
+    "WIF",
+    "CONTENTS",
+    "COLOR PALETTE",
+    "COLOR TABLE",
+    "WEAVING",
+    "WARP",
+    "WEFT",
+    "THREADING",
+    "TIEUP",
+    "TREADLING",
+    "LIFTPLAN",
+    "WARP COLORS",
+    "WEFT COLORS",
+    "WARP SPACING",
+    "WEFT SPACING",
+    "WARP THICKNESS",
+    "WEFT THICKNESS",
+];
+
+/// Texts of which a design keeps title and notes.
+const TEXTS: [&str; 2] = ["TEXT", "NOTES"];
+
+pub(super) fn known(name: &str) -> bool {
+    OWN.iter().chain(&TEXTS).any(|own| same(own, name))
+}
+
+/// Most warnings that are written out; a broken file can give one a line.
+const MAX_WARNINGS: usize = 40;
+
+/// What the reader had to decide for itself.
+#[derive(Debug, Default)]
+pub(super) struct Warnings {
+    list: Vec<String>,
+    more: usize,
+}
+
+impl Warnings {
+    pub fn at(&mut self, line: u32, what: impl AsRef<str>) {
+        self.add(|| format!("line {line}: {}", what.as_ref()));
+    }
+
+    pub fn whole(&mut self, what: impl Into<String>) {
+        self.add(|| what.into());
+    }
+
+    fn add(&mut self, what: impl FnOnce() -> String) {
+        if self.list.len() < MAX_WARNINGS {
+            self.list.push(what());
+        } else {
+            self.more += 1;
+        }
+    }
+
+    fn finish(mut self) -> Vec<String> {
+        if self.more > 0 {
+            self.list
+                .push(format!("and {} more of this kind", self.more));
+        }
+        self.list
+    }
+}
+
+/// The sections of one file, by name.
+pub(super) struct File<'t> {
+    pub name: &'t str,
+    sections: Vec<Section<'t>>,
+}
+
+impl<'t> File<'t> {
+    /// All sections of a name, in order: real files repeat them.
+    pub fn all(&self, name: &'static str) -> impl Iterator<Item = &Section<'t>> {
+        self.sections
+            .iter()
+            .filter(move |section| section.line > 0 && same(section.name, name))
+    }
+
+    /// The last value of a key in a section of this name, with its line.
+    pub fn value(&self, name: &'static str, key: &str) -> Option<(u32, String)> {
+        self.all(name)
+            .filter_map(|section| section.value(key))
+            .last()
+            .map(|(line, value)| (line, value.into_owned()))
+    }
+
+    /// The first line of the first section of this name.
+    pub fn line_of(&self, name: &'static str) -> Option<u32> {
+        self.all(name).next().map(|section| section.line)
+    }
+
+    /// A count: whole, not negative; missing or empty is `None`.
+    fn count(&self, name: &'static str, key: &str, most: u32) -> Result<Option<u32>, WifError> {
+        let Some((line, value)) = self.value(name, key) else {
+            return Ok(None);
+        };
+        let value = bare(&value);
+        if value.is_empty() {
+            return Ok(None);
+        }
+        match value.parse::<u32>() {
+            Ok(count) if count <= most => Ok(Some(count)),
+            _ => Err(WifError::at(
+                self.name,
+                line,
+                format!(
+                    "expected {key} in [{name}] to be a whole number up to {most}, found \"{}\"",
+                    shorten(value)
+                ),
+                "correct the number",
+            )),
+        }
+    }
+}
+
+/// Reads a WIF. `name` is the file's name, for messages and as the name of a design
+/// without a title.
+///
+/// # Errors
+/// [`WifError`]: one line with the file, the line, what was expected and what to do.
+pub fn read(bytes: &[u8], name: &str) -> Result<Imported, WifError> {
+    read_with(bytes, name, &LoadOptions::default())
+}
+
+/// As [`read`], with a sett or a yarn family that the file cannot know.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported, WifError> {
+    let text = text::decode(bytes);
+    let file = File {
+        name,
+        sections: text::sections(&text, name, known)?,
+    };
+    let mut warnings = Warnings::default();
+    if !file.sections.iter().any(|section| known(section.name)) {
+        let problem = "expected a WIF with sections like [WEAVING] and [THREADING], found none";
+        return Err(WifError::whole(name, problem, "choose a .wif file"));
+    }
+    check_shape(&file, &mut warnings);
+    let (draft, zero_based) = read_draft(&file, &mut warnings)?;
+    let active = Active::of(&draft);
+    let palette = colours::Palette::read(&file, &mut warnings)?;
+    let base = u32::from(!zero_based);
+    let warp = threads::read(&file, Direction::Warp, draft.ends(), base, &mut warnings)?;
+    let weft = threads::read(&file, Direction::Weft, draft.picks(), base, &mut warnings)?;
+    let family = options.family.unwrap_or(Family::Cotton);
+    let spacing = Spacing::resolve(&file, &warp, &weft, options, &mut warnings)?;
+    let chosen_warp = palette.choose(&file, Direction::Warp, &warp, &active.ends, &mut warnings)?;
+    let chosen_weft =
+        palette.choose(&file, Direction::Weft, &weft, &active.picks, &mut warnings)?;
+    let (yarns, warp_order, weft_order) =
+        threads::yarns(&palette, family, &spacing, &chosen_warp, &chosen_weft)
+            .map_err(|problem| WifError::whole(name, problem, "use fewer colours"))?;
+    let maps = YarnMaps::orders(warp_order, weft_order);
+    let sett = spacing.sett(usual_sett(&yarns, &maps));
+    let (title, notes) = read_texts(&file, &mut warnings);
+    let title = title.unwrap_or_else(|| stem(name));
+    let wrong = |reason: String| WifError::whole(name, reason, "correct the draft");
+    let mut design = Design::new(title, Structure::Draft(draft), yarns, maps, sett)
+        .map_err(|error| wrong(error.to_string()))?;
+    design.notes = notes;
+    design.origin = Origin {
+        program: file
+            .value("WIF", "Source Program")
+            .map(|(_, program)| program)
+            .filter(|program| !program.is_empty()),
+        sections: foreign(&file),
+        ends: warp.stated(),
+        picks: weft.stated(),
+        palette: palette.colours(),
+        ..Origin::default()
+    };
+    Ok(Imported {
+        design,
+        warnings: warnings.finish(),
+    })
+}
+
+/// The file's name without folders and ending.
+fn stem(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    match last.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem.to_owned(),
+        _ => last.to_owned(),
+    }
+}
+
+/// Warns about what is odd in the file's shape but does no harm.
+fn check_shape(file: &File<'_>, warnings: &mut Warnings) {
+    if let Some(before) = file.sections.first()
+        && let Some(entry) = before.entries(false).next()
+    {
+        let what = "text before the first section is ignored";
+        warnings.at(entry.line, what);
+    }
+    if file.all("WIF").next().is_none() {
+        warnings.whole("there is no [WIF] section; read as WIF 1.1 all the same");
+    }
+    for own in OWN.iter().chain(&TEXTS) {
+        if let Some(again) = file.all(own).nth(1) {
+            let what = format!("[{own}] stands there again; later lines count");
+            warnings.at(again.line, what);
+        }
+    }
+    for section in &file.sections {
+        if section.line > 0 && OWN.iter().any(|own| same(own, section.name)) {
+            for entry in section.entries(true).filter(|entry| entry.value.is_none()) {
+                let what = format!("\"{}\" has no \"=\" and is ignored", shorten(entry.key));
+                warnings.at(entry.line, what);
+            }
+        }
+    }
+}
+
+/// A title without the folders that some programs put before it.
+fn without_path(title: &str) -> String {
+    let drive = title.get(1..3) == Some(":\\");
+    let name = match title.rsplit_once('\\') {
+        Some((_, name)) if drive => name,
+        _ => title,
+    };
+    name.trim().to_owned()
+}
+
+/// Sections that a design has no place for.
+fn foreign(file: &File<'_>) -> Vec<ForeignSection> {
+    file.sections
+        .iter()
+        .filter(|section| section.line > 0 && !known(section.name))
+        .map(|section| ForeignSection {
+            name: section.name.to_owned(),
+            lines: section.verbatim(),
+        })
+        .collect()
+}
+
+/// Title and notes; addresses are left behind.
+fn read_texts(file: &File<'_>, warnings: &mut Warnings) -> (Option<String>, Vec<String>) {
+    let title = file
+        .value("TEXT", "Title")
+        .map(|(_, title)| without_path(&title))
+        .filter(|title| !title.is_empty());
+    for contact in ["Author", "Address", "EMail", "Telephone", "FAX"] {
+        if let Some((line, value)) = file.value("TEXT", contact)
+            && !value.is_empty()
+        {
+            warnings.at(line, format!("{contact} is personal and not kept"));
+        }
+    }
+    let mut notes: Vec<(u32, String)> = Vec::new();
+    for section in file.all("NOTES") {
+        for entry in section.entries(false) {
+            if let (Ok(place), Some(note)) = (entry.key.parse(), entry.value) {
+                notes.push((place, note.into_owned()));
+            }
+        }
+    }
+    notes.sort_by_key(|&(place, _)| place);
+    let mut notes: Vec<String> = notes.into_iter().map(|(_, note)| note).collect();
+    while notes.last().is_some_and(String::is_empty) {
+        notes.pop();
+    }
+    (title, notes)
+}
+
+/// A list section as it stands: for each line a thread number and its members.
+struct Rows {
+    /// Thread as written, line, and where its members start and end.
+    rows: Vec<(u32, u32, u32, u32)>,
+    members: Vec<u32>,
+}
+
+impl Rows {
+    fn read(
+        file: &File<'_>,
+        name: &'static str,
+        warnings: &mut Warnings,
+    ) -> Result<Self, WifError> {
+        let mut found = Self {
+            rows: Vec::new(),
+            members: Vec::new(),
+        };
+        for section in file.all(name) {
+            for entry in section.entries(true) {
+                let Some(value) = &entry.value else {
+                    continue;
+                };
+                let Ok(thread) = bare(entry.key).parse::<u32>() else {
+                    let what = format!("\"{}\" in [{name}] is no thread", shorten(entry.key));
+                    warnings.at(entry.line, format!("{what}; ignored"));
+                    continue;
+                };
+                let from = found.members.len() as u32;
+                for member in bare(value).split(',').map(str::trim) {
+                    if member.is_empty() {
+                        continue;
+                    }
+                    match member.parse::<u32>() {
+                        Ok(member) if member <= MAX_SHAFTS => found.members.push(member),
+                        _ => {
+                            return Err(WifError::at(
+                                file.name,
+                                entry.line,
+                                format!(
+                                    "expected numbers up to {MAX_SHAFTS} separated by commas \
+                                     in [{name}], found \"{}\"",
+                                    shorten(member)
+                                ),
+                                "correct the list",
+                            ));
+                        }
+                    }
+                }
+                let to = found.members.len() as u32;
+                found.rows.push((thread, entry.line, from, to));
+            }
+        }
+        // Later lines of the same thread come last and win.
+        found.rows.sort_by_key(|&(thread, line, ..)| (thread, line));
+        Ok(found)
+    }
+
+    fn largest_thread(&self) -> u32 {
+        self.rows.last().map_or(0, |&(thread, ..)| thread)
+    }
+
+    fn largest_member(&self) -> u32 {
+        self.members.iter().copied().max().unwrap_or(0)
+    }
+
+    /// Whether any line names a member other than 0.
+    fn says_something(&self) -> bool {
+        self.members.iter().any(|&member| member > 0)
+    }
+
+    /// `threads` sets counted from 0, from rows counted from `base` with members counted
+    /// from `member_base` (0 in a file that counts from 1 means none).
+    fn ties(
+        &self,
+        name: &str,
+        threads: u32,
+        base: u32,
+        member_base: u32,
+        warnings: &mut Warnings,
+    ) -> Ties {
+        let mut ties = Ties::default();
+        let mut set = Vec::new();
+        let mut next = 0;
+        for thread in 0..threads {
+            set.clear();
+            let mut seen = false;
+            while let Some(&(written, line, from, to)) = self.rows.get(next)
+                && written < thread + base + 1
+            {
+                next += 1;
+                if written < base {
+                    let what = format!("thread {written} in [{name}] is ignored: the first is 1");
+                    warnings.at(line, what);
+                    continue;
+                }
+                if seen {
+                    let what = format!("thread {written} in [{name}] stands there again");
+                    warnings.at(line, format!("{what}; the later line counts"));
+                }
+                seen = true;
+                set.clear();
+                set.extend(
+                    self.members[from as usize..to as usize]
+                        .iter()
+                        .filter_map(|member| member.checked_sub(member_base)),
+                );
+            }
+            ties.push(&set);
+        }
+        if let Some(&(written, line, ..)) = self.rows.get(next) {
+            let what = format!("thread {written} in [{name}] is beyond the last ({threads})");
+            warnings.at(line, format!("{what}; it and those after it are ignored"));
+        }
+        ties
+    }
+}
+
+/// Declared threads of a direction, or as many as the lists name.
+fn thread_count(
+    file: &File<'_>,
+    section: &'static str,
+    listed: u32,
+    list: &'static str,
+    warnings: &mut Warnings,
+) -> Result<u32, WifError> {
+    let declared = file.count(section, "Threads", MAX_THREADS)?;
+    match declared {
+        Some(threads) if threads > 0 => Ok(threads),
+        _ if listed > 0 && listed <= MAX_THREADS => {
+            let what = format!("[{section}] declares no Threads; {listed} are listed");
+            warnings.whole(format!("{what} in [{list}] and taken"));
+            Ok(listed)
+        }
+        _ => Err(WifError::at(
+            file.name,
+            file.line_of(section).unwrap_or(1),
+            format!("expected Threads=1 to {MAX_THREADS} in [{section}], found none"),
+            format!("say how many threads there are, or list them in [{list}]"),
+        )),
+    }
+}
+
+/// How many there are: as declared, or as many as are used.
+fn at_least(declared: Option<u32>, used: u32, what: &str, warnings: &mut Warnings) -> u32 {
+    match declared {
+        Some(declared) if declared >= used => declared,
+        Some(declared) if declared > 0 => {
+            warnings.whole(format!(
+                "{what}={declared} is declared, but {used} are used: there are {used}"
+            ));
+            used
+        }
+        _ => used,
+    }
+}
+
+/// The draft, and whether the file counts from 0.
+fn read_draft(file: &File<'_>, warnings: &mut Warnings) -> Result<(Draft, bool), WifError> {
+    let threading = Rows::read(file, "THREADING", warnings)?;
+    let tieup = Rows::read(file, "TIEUP", warnings)?;
+    let treadling = Rows::read(file, "TREADLING", warnings)?;
+    let plan = Rows::read(file, "LIFTPLAN", warnings)?;
+    if threading.rows.is_empty() {
+        let problem = "expected a [THREADING] with the shaft of each end, found none";
+        return Err(WifError::whole(file.name, problem, "add the threading"));
+    }
+    let zero_based = threading.rows[0].0 == 0
+        && file.count("WARP", "Threads", MAX_THREADS)? != Some(threading.largest_thread());
+    if zero_based {
+        warnings.whole("thread 0 is threaded: the file counts threads and shafts from 0");
+    }
+    let base = u32::from(!zero_based);
+    // Highest number used, counted from 1.
+    let highest = |number: u32| number + (1 - base);
+    let treadled = tieup.says_something() && !treadling.rows.is_empty();
+    let lifted = plan.says_something();
+    if !treadled && !lifted {
+        return Err(no_lifting(file, &tieup, &treadling));
+    }
+    let picks_listed = highest(treadling.largest_thread().max(plan.largest_thread()));
+    let ends_listed = highest(threading.largest_thread());
+    let ends = thread_count(file, "WARP", ends_listed, "THREADING", warnings)?;
+    let picks = thread_count(file, "WEFT", picks_listed, "TREADLING", warnings)?;
+    check_size(u64::from(ends), u64::from(picks)).map_err(|error| {
+        let line = file.line_of("WARP").unwrap_or(1);
+        WifError::at(file.name, line, error.to_string(), "check Threads")
+    })?;
+    let shafts_used = [&threading, &tieup, &plan]
+        .map(Rows::largest_member)
+        .into_iter()
+        .max()
+        .unwrap_or(0);
+    let shafts = at_least(
+        file.count("WEAVING", "Shafts", MAX_SHAFTS)?,
+        highest(shafts_used),
+        "Shafts",
+        warnings,
+    );
+    let threading = threading.ties("THREADING", ends, base, base, warnings);
+    let shed = read_shed(file, warnings);
+    let declared = file.count("WEAVING", "Treadles", MAX_SHAFTS)?;
+    let make = |lifting, treadles| {
+        Draft::new(shafts, treadles, shed, threading.clone(), lifting)
+            .map_err(|error| WifError::whole(file.name, error.to_string(), "correct the draft"))
+    };
+    let by_treadles = if treadled {
+        let tied = highest(tieup.largest_thread());
+        let treadles = at_least(declared, tied, "Treadles", warnings);
+        check_treadles(file, &treadling, treadles, base)?;
+        let tieup = tieup.ties("TIEUP", treadles, base, base, warnings);
+        let treadling = treadling.ties("TREADLING", picks, base, base, warnings);
+        Some(make(Lifting::Treadled { tieup, treadling }, treadles)?)
+    } else {
+        None
+    };
+    let by_plan = if lifted {
+        let plan = plan.ties("LIFTPLAN", picks, base, base, warnings);
+        Some(make(
+            Lifting::LiftPlan(plan),
+            shafts.max(declared.unwrap_or(0)),
+        )?)
+    } else {
+        None
+    };
+    let draft = match (by_treadles, by_plan) {
+        (Some(treadled), Some(planned)) => choose_lifting(file, treadled, planned, warnings),
+        (Some(draft), None) | (None, Some(draft)) => draft,
+        (None, None) => return Err(no_lifting(file, &tieup, &treadling)),
+    };
+    warn_unused_threads(&draft, warnings);
+    Ok((draft, zero_based))
+}
+
+fn no_lifting(file: &File<'_>, tieup: &Rows, treadling: &Rows) -> WifError {
+    let (missing, line) = if !treadling.rows.is_empty() {
+        ("a [TIEUP] for the treadles", file.line_of("TREADLING"))
+    } else if tieup.says_something() {
+        ("a [TREADLING] for the tie-up", file.line_of("TIEUP"))
+    } else {
+        ("[TIEUP] and [TREADLING], or a [LIFTPLAN]", None)
+    };
+    WifError {
+        file: file.name.to_owned(),
+        line,
+        problem: format!("expected {missing}, found none"),
+        remedy: "add it, or write a [LIFTPLAN]".to_owned(),
+    }
+}
+
+/// A pressed treadle must be declared or tied up.
+fn check_treadles(
+    file: &File<'_>,
+    treadling: &Rows,
+    treadles: u32,
+    base: u32,
+) -> Result<(), WifError> {
+    for &(_, line, from, to) in &treadling.rows {
+        for &treadle in &treadling.members[from as usize..to as usize] {
+            if treadle + (1 - base) > treadles {
+                return Err(WifError::at(
+                    file.name,
+                    line,
+                    format!("expected treadles up to {treadles}, found treadle {treadle}"),
+                    "tie that treadle up in [TIEUP] or correct the number",
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn read_shed(file: &File<'_>, warnings: &mut Warnings) -> Shed {
+    match file.value("WEAVING", "Rising Shed") {
+        None => Shed::Rising,
+        Some((line, value)) => match boolean(&value) {
+            Some(true) => Shed::Rising,
+            Some(false) => Shed::Sinking,
+            None => {
+                let what = format!("Rising Shed=\"{}\" is neither yes nor no", shorten(&value));
+                warnings.at(line, format!("{what}; taken as rising"));
+                Shed::Rising
+            }
+        },
+    }
+}
+
+/// Of a tie-up and a lift plan in one file: silent if they weave the same.
+fn choose_lifting(
+    file: &File<'_>,
+    treadled: Draft,
+    planned: Draft,
+    warnings: &mut Warnings,
+) -> Draft {
+    let loom = file.value("WEAVING", "Loom Type");
+    if loom.is_some_and(|(_, loom)| same(&loom, "Lift Plan") || same(&loom, "LiftPlan")) {
+        return planned;
+    }
+    if treadled.drawdown() != planned.drawdown() {
+        let line = file.line_of("LIFTPLAN").unwrap_or(1);
+        let what = "the lift plan weaves another cloth than tie-up and treadling";
+        warnings.at(line, format!("{what}; tie-up and treadling count"));
+    }
+    treadled
+}
+
+/// Ends on a shaft and picks that lift something.
+struct Active {
+    ends: Vec<bool>,
+    picks: Vec<bool>,
+}
+
+impl Active {
+    fn of(draft: &Draft) -> Self {
+        let lifts = match draft.lifting() {
+            Lifting::Treadled { treadling, .. } => treadling,
+            Lifting::LiftPlan(plan) => plan,
+        };
+        Self {
+            ends: draft.threading().iter().map(|on| !on.is_empty()).collect(),
+            picks: lifts.iter().map(|set| !set.is_empty()).collect(),
+        }
+    }
+}
+
+fn warn_unused_threads(draft: &Draft, warnings: &mut Warnings) {
+    let active = Active::of(draft);
+    for (flags, thread, does) in [
+        (&active.ends, "end", "on no shaft"),
+        (&active.picks, "pick", "without a lift"),
+    ] {
+        let idle = flags.iter().filter(|&&used| !used).count();
+        if idle == 0 {
+            continue;
+        }
+        let last = flags.iter().rposition(|&used| used).map_or(0, |at| at + 1);
+        let place = if flags.len() - last == idle {
+            format!(": all after {thread} {last}")
+        } else {
+            String::new()
+        };
+        let plural = if idle == 1 { " is" } else { "s are" };
+        warnings.whole(format!("{idle} {thread}{plural} {does}{place}"));
+    }
+}
+
+/// Whether a spacing in mm is the default of a drawing program rather than a sett.
+pub(super) fn is_program_default(spacing_mm: f32) -> bool {
+    (spacing_mm / (10.0 * DEFAULT_SPACING_CM) - 1.0).abs() < 1e-3
+}

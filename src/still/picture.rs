@@ -1,0 +1,316 @@
+//! Making the cloth of a design and its picture.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+
+use super::request::{LightChoice, StillReport, StillRequest};
+use super::{StillError, effects};
+use crate::cloth::{ClothSettings, ClothVolume, YarnClasses, colour};
+use crate::design::Design;
+use crate::exemplar::ExemplarStore;
+use crate::formats::{exr, png};
+use crate::job::Job;
+use crate::render::{self, Camera, Film, LightRig, RenderSettings, Tone, View};
+use crate::synthesis::Catalogue;
+
+/// Samples a pixel when a request gives no way to stop.
+const USUAL_SPP: u32 = 64;
+
+/// Width of cloth a view shows when none is asked for, mm.
+pub fn usual_width_mm(view: View, design: &Design) -> f32 {
+    let pitch = design
+        .sett()
+        .ends
+        .mean_pitch_mm()
+        .max(design.sett().picks.mean_pitch_mm());
+    match view {
+        View::Close => pitch * 9.0,
+        View::Oblique | View::Grazing => pitch * 24.0,
+        View::Face | View::Back => (pitch * design.ends() as f32).clamp(pitch * 24.0, pitch * 72.0),
+    }
+}
+
+/// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
+pub struct PreparedCloth {
+    design: Arc<Design>,
+    cloth: ClothVolume,
+    seconds: Vec<(String, f64)>,
+    effects: Vec<(String, bool)>,
+}
+
+impl PreparedCloth {
+    /// The cloth.
+    pub fn cloth(&self) -> &ClothVolume {
+        &self.cloth
+    }
+}
+
+/// The picture so far.
+pub struct Pass<'p> {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// sRGB with straight alpha, top row first.
+    pub rgba: &'p [u8],
+    /// Samples in every pixel.
+    pub spp: u32,
+    /// Seconds of rendering.
+    pub seconds: f64,
+    /// Error so far.
+    pub error: Option<f64>,
+}
+
+/// The settings that a request makes of the defaults.
+fn settings(
+    request: &StillRequest,
+) -> Result<(ClothSettings, RenderSettings, Vec<(String, bool)>), StillError> {
+    let mut cloth = ClothSettings::default();
+    let mut render = RenderSettings {
+        seed: request.seed,
+        backing: request.backing,
+        spp: request
+            .stop
+            .spp
+            .unwrap_or(match (request.stop.seconds, request.stop.error) {
+                (None, None) => USUAL_SPP,
+                _ => u32::MAX,
+            }),
+        error: request.stop.error.unwrap_or(0.0) as f32,
+        ..RenderSettings::default()
+    };
+    cloth.synthesis.seed = request.seed;
+    effects::turn(&request.dials, &mut cloth, &mut render)?;
+    let on = effects::choose(&request.effects, &mut cloth, &mut render)?;
+    Ok((cloth, render, on))
+}
+
+/// Builds what every picture of a design needs; `request` gives the dials and the seed.
+///
+/// # Errors
+/// When the design cannot be made into cloth, a dial is wrong, or the job is cancelled.
+pub fn prepare(
+    design: &Arc<Design>,
+    request: &StillRequest,
+    store: &ExemplarStore,
+    job: &Job,
+) -> Result<PreparedCloth, StillError> {
+    let (settings, _, effects) = settings(request)?;
+    let begun = Instant::now();
+    let catalogue = Arc::new(Catalogue::standard());
+    let classes = YarnClasses::new(design);
+    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings)
+        .map_err(crate::cloth::ClothError::from)?;
+    let mut sets = Vec::with_capacity(classes.pairs.len());
+    for pair in &classes.pairs {
+        let set = store
+            .get(&catalogue, pair, grid, job)
+            .map_err(crate::cloth::ClothError::from)?;
+        sets.push(set);
+    }
+    let exemplars = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    let albedo: Vec<Vec3> = design.yarns().iter().map(colour::albedo).collect();
+    let cloth = ClothVolume::new(design, catalogue, classes, sets, albedo, settings, job)?;
+    let synthesis = begun.elapsed().as_secs_f64();
+    Ok(PreparedCloth {
+        design: Arc::clone(design),
+        cloth,
+        seconds: vec![
+            ("exemplars".to_owned(), exemplars),
+            ("synthesis".to_owned(), synthesis),
+        ],
+        effects,
+    })
+}
+
+fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
+    let rig = match choice {
+        LightChoice::Preset(name) => LightRig::preset(name)?,
+        LightChoice::Environment(path) => {
+            LightRig::from_image(&path.display().to_string(), exr::read_environment(path)?)?
+        }
+    };
+    Ok(if view.turns_over() {
+        rig.turned_over()
+    } else {
+        rig
+    })
+}
+
+fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
+    let (width, height) = (request.width, request.height);
+    if !(1..=16_384).contains(&width) || !(1..=16_384).contains(&height) {
+        return Err(StillError::Size(width, height));
+    }
+    let width_mm = request
+        .width_mm
+        .unwrap_or_else(|| usual_width_mm(request.view, design));
+    if !(0.01..=10_000.0).contains(&width_mm) {
+        return Err(StillError::Width(width_mm));
+    }
+    let [x, y] = request.centre_mm.unwrap_or_else(|| {
+        [
+            design.end_positions().repeat_mm(),
+            design.pick_positions().repeat_mm(),
+        ]
+        .map(|repeat| 0.5 * repeat as f32)
+    });
+    Ok(request
+        .view
+        .camera(Vec3::new(x, y, 0.0), width_mm, width, height))
+}
+
+/// Renders one picture; `on_pass` sees it after every pass.
+///
+/// # Errors
+/// When the request is not usable or the job is cancelled.
+pub fn render(
+    prepared: &PreparedCloth,
+    request: &StillRequest,
+    job: &Job,
+    on_pass: &mut dyn FnMut(&Pass<'_>),
+) -> Result<Still, StillError> {
+    let (_, settings, _) = settings(request)?;
+    let camera = camera(&prepared.design, request)?;
+    let lights = lights(&request.light, request.view)?;
+    let tone = Tone {
+        exposure: request.exposure_ev,
+    };
+    let job = match request
+        .stop
+        .seconds
+        .and_then(|s| Duration::try_from_secs_f64(s).ok())
+    {
+        Some(time) => job.clone().with_deadline(Instant::now() + time),
+        None => job.clone(),
+    };
+    let mut show = |film: &Film, progress: &render::Progress| {
+        let picture = tone.picture(film);
+        let rgba: Vec<u8> = picture
+            .pixels
+            .iter()
+            .flat_map(|pixel| pixel.map(byte))
+            .collect();
+        on_pass(&Pass {
+            width: picture.width,
+            height: picture.height,
+            rgba: &rgba,
+            spp: progress.spp,
+            seconds: progress.seconds,
+            error: known(progress.error.error),
+        });
+    };
+    let outcome = render::render(
+        &prepared.cloth,
+        &camera,
+        &lights,
+        &settings,
+        &job,
+        &mut show,
+    )?;
+    let mut seconds = prepared.seconds.clone();
+    seconds.push(("render".to_owned(), outcome.seconds));
+    let report = StillReport {
+        renderer: "cpu".to_owned(),
+        width: request.width,
+        height: request.height,
+        spp: outcome.spp,
+        total_seconds: seconds.iter().map(|stage| stage.1).sum(),
+        seconds,
+        paths_per_second: outcome.paths_per_second,
+        error: known(outcome.error.error),
+        error_interval: known(outcome.error.error).map(|_| [outcome.error.low, outcome.error.high]),
+        invalid_samples: outcome.counters.invalid_samples,
+        majorant_violations: outcome.counters.majorant_violations,
+        effects: prepared.effects.clone(),
+    };
+    let texts = vec![
+        (
+            "Software".to_owned(),
+            format!("Pickglass {}", env!("CARGO_PKG_VERSION")),
+        ),
+        ("Title".to_owned(), prepared.design.name.clone()),
+        ("Design".to_owned(), design_hash(&prepared.design)),
+        ("Settings".to_owned(), format!("{request:?}")),
+    ];
+    Ok(Still {
+        report,
+        film: outcome.film,
+        tone,
+        pixels_per_mm: camera.pixels_per_mm(),
+        texts,
+    })
+}
+
+/// Prepares and renders in one go, with the user's exemplar store.
+///
+/// # Errors
+/// As [`prepare`] and [`render`].
+pub fn render_still(
+    design: &Arc<Design>,
+    request: &StillRequest,
+    job: &Job,
+    on_pass: &mut dyn FnMut(&Pass<'_>),
+) -> Result<Still, StillError> {
+    let cloth = prepare(design, request, &ExemplarStore::user(), job)?;
+    render(&cloth, request, job, on_pass)
+}
+
+fn known(error: f64) -> Option<f64> {
+    error.is_finite().then_some(error)
+}
+
+fn byte(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+/// Hash of a design's document, hexadecimal.
+fn design_hash(design: &Design) -> String {
+    match crate::formats::ron::write(design) {
+        Ok(text) => blake3::hash(text.as_bytes()).to_hex()[..16].to_owned(),
+        Err(_) => "unknown".to_owned(),
+    }
+}
+
+/// A finished picture with its film.
+pub struct Still {
+    /// How it came about.
+    pub report: StillReport,
+    /// Linear means, variances and features.
+    pub film: Film,
+    tone: Tone,
+    pixels_per_mm: f32,
+    texts: Vec<(String, String)>,
+}
+
+impl Still {
+    /// The picture as shown: sRGB with straight alpha.
+    pub fn picture(&self) -> png::Picture {
+        self.tone.picture(&self.film)
+    }
+
+    /// Writes `.png` or `.exr`, replacing the file in one step.
+    ///
+    /// # Errors
+    /// When the ending is neither or the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), StillError> {
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some(ending) if ending.eq_ignore_ascii_case("png") => {
+                let metadata = png::Metadata {
+                    pixels_per_mm: Some(self.pixels_per_mm),
+                    texts: self.texts.clone(),
+                };
+                png::write(path, &self.picture(), png::Depth::Eight, &metadata)?;
+            }
+            Some(ending) if ending.eq_ignore_ascii_case("exr") => {
+                exr::write(path, &self.film, self.pixels_per_mm, &self.texts)?;
+            }
+            _ => return Err(StillError::Ending(path.to_owned())),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,132 @@
+//! What picture is asked for, and how it came about.
+
+use std::path::PathBuf;
+
+use crate::render::{Backing, PRESET_NAMES, View};
+
+/// What lights the cloth.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LightChoice {
+    /// A rig by name, one of [`PRESET_NAMES`].
+    Preset(String),
+    /// An equirectangular `.exr`.
+    Environment(PathBuf),
+}
+
+impl Default for LightChoice {
+    fn default() -> Self {
+        Self::Preset(PRESET_NAMES[0].to_owned())
+    }
+}
+
+/// Which effects to start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum EffectBase {
+    /// What the scene calls for.
+    #[default]
+    Auto,
+    /// All of them.
+    All,
+    /// None of them.
+    None,
+}
+
+/// Which effects are simulated.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct EffectChoice {
+    /// Where to start.
+    pub base: EffectBase,
+    /// Effects by name, switched on or off.
+    pub changes: Vec<(String, bool)>,
+}
+
+/// When to stop refining: at the first that is reached.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stop {
+    /// Samples in every pixel.
+    pub spp: Option<u32>,
+    /// Seconds of rendering.
+    pub seconds: Option<f64>,
+    /// Error, see [`crate::render::error`].
+    pub error: Option<f64>,
+}
+
+/// A picture that is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StillRequest {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// From where.
+    pub view: View,
+    /// Width of cloth the picture shows, mm; `None` = the view's own.
+    pub width_mm: Option<f32>,
+    /// The point of the cloth in the picture's middle, mm; `None` = the design's middle.
+    pub centre_mm: Option<[f32; 2]>,
+    /// What lights the cloth.
+    pub light: LightChoice,
+    /// Exposure in stops.
+    pub exposure_ev: f32,
+    /// What lies behind the cloth.
+    pub backing: Backing,
+    /// Which effects are simulated.
+    pub effects: EffectChoice,
+    /// Dials by name, with the value as text; see [`super::DIALS`].
+    pub dials: Vec<(String, String)>,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// When to stop.
+    pub stop: Stop,
+    /// Which of a design's named yarn sets; `None` = the design's own yarns.
+    pub colourway: Option<String>,
+}
+
+impl Default for StillRequest {
+    fn default() -> Self {
+        Self {
+            width: 1280,
+            height: 960,
+            view: View::Face,
+            width_mm: None,
+            centre_mm: None,
+            light: LightChoice::default(),
+            exposure_ev: 0.0,
+            backing: Backing::None,
+            effects: EffectChoice::default(),
+            dials: Vec::new(),
+            seed: 0,
+            stop: Stop::default(),
+            colourway: None,
+        }
+    }
+}
+
+/// How a picture came about.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StillReport {
+    /// The engine.
+    pub renderer: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples in every pixel.
+    pub spp: u32,
+    /// Stages in order, without the total.
+    pub seconds: Vec<(String, f64)>,
+    /// All stages.
+    pub total_seconds: f64,
+    /// Camera paths per second of rendering.
+    pub paths_per_second: f64,
+    /// Error before denoising; `None` when nothing is known of it.
+    pub error: Option<f64>,
+    /// Its 95 % confidence interval.
+    pub error_interval: Option<[f64; 2]>,
+    /// Samples dropped because they were not finite.
+    pub invalid_samples: u64,
+    /// Lookups above their bound.
+    pub majorant_violations: u64,
+    /// Effects by name, and whether they were simulated.
+    pub effects: Vec<(String, bool)>,
+}

@@ -1,0 +1,552 @@
+//! Edge fixing: Zhao 2012 §5.5.
+
+use pickglass::design::{Lattice, WeavePattern};
+use pickglass::job::Job;
+use pickglass::synthesis::{
+    Assignment, BOUND_COLUMN, BlockRef, Catalogue, EdgeFix, EdgeHeights, Face, Method,
+    NeighbourBits, Neighbourhood, Placement, Randomisation, Rank, SeamRms, Side, SynthesisError,
+    assign,
+};
+
+const BX: usize = 24;
+const BY: usize = 28;
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f32 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() * count as f32) as usize % count
+    }
+}
+
+/// The silhouette of a plied yarn of fibres across an edge of `length` stacks: a flattened
+/// arch at a level set by what lies on top, two plies, and fibres as small arcs upon them.
+fn silhouette(length: usize, level: f32, random: &mut Random) -> Vec<f32> {
+    let half = length as f32 / 2.0;
+    let centre = half + 4.0 * (random.next() - 0.5);
+    let radius = half * (0.8 + 0.4 * random.next());
+    let twist = random.next() * std::f32::consts::TAU;
+    let fibres: Vec<(f32, f32)> = (0..length / 2)
+        .map(|_| (random.next() * length as f32, 1.0 + random.next()))
+        .collect();
+    (0..length)
+        .map(|at| {
+            let x = at as f32 + 0.5;
+            let u = ((x - centre) / radius).clamp(-1.0, 1.0);
+            let arch = 0.6 * radius * (1.0 - u * u).sqrt();
+            let plies = 1.5 * (2.0 * u * std::f32::consts::PI + twist).cos().abs();
+            let fibre = fibres
+                .iter()
+                .map(|(at, r)| (r * r - (x - at) * (x - at)).max(0.0).sqrt())
+                .fold(0.0, f32::max);
+            level + arch + plies + fibre
+        })
+        .collect()
+}
+
+/// Heights of a made-up exemplar set: levels follow the crossings beside the edge.
+fn yarn_like(catalogue: &Catalogue, bx: usize, by: usize, seed: u64) -> EdgeHeights {
+    let mut random = Random(seed);
+    let mut heights = EdgeHeights::flat(catalogue.blocks(), bx, by);
+    for block in 0..catalogue.blocks() as u16 {
+        for side in Side::ALL {
+            let bits = [
+                catalogue.key(block) & 1,
+                catalogue.key(block) >> side as u8 & 1,
+            ];
+            for face in Face::ALL {
+                let up = bits
+                    .iter()
+                    .filter(|&&bit| (bit == 1) == (face == Face::Front))
+                    .count();
+                let along = matches!(side, Side::Below | Side::Above);
+                let level = 4.0 * if along { up as f32 } else { 2.0 - up as f32 };
+                let length = heights.profile(face, block, side).len();
+                let sign = if face == Face::Front { 1.0 } else { -1.0 };
+                let profile = silhouette(length, level, &mut random);
+                for (height, value) in heights
+                    .profile_mut(face, block, side)
+                    .iter_mut()
+                    .zip(profile)
+                {
+                    *height = sign * value;
+                }
+            }
+        }
+    }
+    heights
+}
+
+fn fix(heights: &[EdgeHeights], catalogue: &Catalogue, rank: Rank) -> EdgeFix {
+    EdgeFix::new(heights, catalogue, rank, &Job::new()).unwrap()
+}
+
+fn wavy_twill() -> WeavePattern {
+    WeavePattern::from_fn(96, 96, |end, pick| {
+        let wave = (12.0 * (f64::from(pick) * std::f64::consts::TAU / 96.0).sin()).round();
+        (i64::from(end) - wave as i64).rem_euclid(6) < 3
+    })
+}
+
+fn assigned(catalogue: &Catalogue, method: Method) -> Assignment {
+    assign(
+        &wavy_twill(),
+        Lattice::default(),
+        catalogue,
+        method,
+        3,
+        &Job::new(),
+    )
+    .unwrap()
+}
+
+fn placement<'a>(catalogue: &'a Catalogue, assignment: &'a Assignment) -> Placement<'a> {
+    Placement {
+        catalogue,
+        assignment,
+        randomisation: Randomisation { seed: 3, patch: 3 },
+    }
+}
+
+fn rms(catalogue: &Catalogue, heights: &[EdgeHeights], rank: Rank) -> SeamRms {
+    let assignment = assigned(catalogue, Method::Dp);
+    placement(catalogue, &assignment)
+        .seam_rms(
+            &fix(heights, catalogue, rank),
+            heights,
+            |_, _| 0,
+            &Job::new(),
+        )
+        .unwrap()
+}
+
+fn random_neighbourhood(catalogue: &Catalogue, sets: usize, random: &mut Random) -> Neighbourhood {
+    let mut block = || BlockRef {
+        set: random.below(sets) as u16,
+        block: random.below(catalogue.blocks()) as u16,
+    };
+    Neighbourhood {
+        centre: block(),
+        sides: [(); 4].map(|()| Some(block())),
+    }
+}
+
+/// A random neighbourhood whose neighbours have the yarn on top that the centre expects.
+fn consistent_neighbourhood(
+    catalogue: &Catalogue,
+    sets: usize,
+    random: &mut Random,
+) -> Neighbourhood {
+    let mut around = random_neighbourhood(catalogue, sets, random);
+    let key = catalogue.key(around.centre.block);
+    for side in Side::ALL {
+        let list = catalogue.correct(key >> side as u8 & 1 == 1);
+        if let Some(neighbour) = &mut around.sides[side.index()] {
+            neighbour.block = list[random.below(list.len())];
+        }
+    }
+    around
+}
+
+fn height_after(
+    heights: &[EdgeHeights],
+    fix: &EdgeFix,
+    around: &Neighbourhood,
+    face: Face,
+    side: Side,
+    at: usize,
+) -> f32 {
+    let (x, y) = match side {
+        Side::Left => (0, at),
+        Side::Right => (fix.block_size().0 - 1, at),
+        Side::Below => (at, 0),
+        Side::Above => (at, fix.block_size().1 - 1),
+    };
+    let seam = fix.seam(around, face);
+    let centre = around.centre;
+    heights[usize::from(centre.set)].profile(face, centre.block, side)[at] + fix.shift(&seam, x, y)
+}
+
+/// Largest jump left at the shared edge of two blocks among random others.
+fn largest_jump(rank: Rank) -> f32 {
+    let catalogue = Catalogue::standard();
+    let heights = [
+        yarn_like(&catalogue, BX, BY, 1),
+        yarn_like(&catalogue, BX, BY, 2),
+    ];
+    let fix = fix(&heights, &catalogue, rank);
+    let mut random = Random(7);
+    let mut largest = 0.0f32;
+    for _ in 0..200 {
+        let mut one = random_neighbourhood(&catalogue, 2, &mut random);
+        let mut two = random_neighbourhood(&catalogue, 2, &mut random);
+        for (side, length) in [(Side::Right, BY), (Side::Above, BX)] {
+            one.sides[side.index()] = Some(two.centre);
+            two.sides[side.opposite().index()] = Some(one.centre);
+            if fix.continues(one.centre, side, two.centre) {
+                continue;
+            }
+            for face in Face::ALL {
+                for at in 1..length - 1 {
+                    let first = height_after(&heights, &fix, &one, face, side, at);
+                    let second = height_after(&heights, &fix, &two, face, side.opposite(), at);
+                    largest = largest.max((first - second).abs());
+                }
+            }
+        }
+    }
+    largest
+}
+
+#[test]
+fn exact_rank_closes_every_seam() {
+    assert!(largest_jump(Rank::Exact) < 1e-4);
+    assert!(largest_jump(Rank::Truncated(1000)) < 1e-4);
+}
+
+#[test]
+fn a_low_rank_leaves_jumps() {
+    assert!(largest_jump(Rank::Truncated(4)) > 0.1);
+    assert!(largest_jump(Rank::Off) > 5.0);
+}
+
+#[test]
+fn rank_15_takes_four_fifths_of_the_seams_on_both_faces() {
+    let catalogue = Catalogue::standard();
+    let heights = [yarn_like(&catalogue, 40, 40, 5)];
+    let measured = rms(&catalogue, &heights, Rank::Truncated(15));
+    println!("{measured:?}");
+    assert!(measured.seams > 1000);
+    assert!(measured.before > 5.0 * measured.after, "{measured:?}");
+    assert!(measured.front[0] > 5.0 * measured.front[1], "{measured:?}");
+    assert!(measured.back[0] > 5.0 * measured.back[1], "{measured:?}");
+}
+
+#[test]
+fn seams_shrink_with_rank_and_stay_without_it() {
+    let catalogue = Catalogue::standard();
+    let heights = [yarn_like(&catalogue, BX, BY, 5)];
+    let after = |rank| rms(&catalogue, &heights, rank).after;
+    let off = rms(&catalogue, &heights, Rank::Off);
+    assert_eq!(off.before, off.after);
+    assert_eq!(after(Rank::Truncated(0)), off.before);
+    let ladder = [1, 2, 4, 8, 15, 22].map(|rank| after(Rank::Truncated(rank)));
+    assert!(ladder[0] < off.before);
+    assert!(ladder.is_sorted_by(|a, b| a > b), "{ladder:?}");
+    assert!(after(Rank::Exact) < 1e-5);
+}
+
+#[test]
+fn the_basis_beats_one_of_another_catalogue_of_heights() {
+    // Negative control of "the Gram matrix fits these seams": a basis fitted to other
+    // heights, here white noise, leaves more at the same rank.
+    let catalogue = Catalogue::standard();
+    let good = yarn_like(&catalogue, BX, BY, 5);
+    let mut noise = EdgeHeights::flat(catalogue.blocks(), BX, BY);
+    let mut random = Random(1);
+    for table in [
+        &mut noise.left,
+        &mut noise.right,
+        &mut noise.bottom,
+        &mut noise.top,
+    ] {
+        table
+            .iter_mut()
+            .for_each(|height| *height = 1000.0 * random.next());
+    }
+    let alone = rms(&catalogue, std::slice::from_ref(&good), Rank::Truncated(8));
+    let disturbed = rms(&catalogue, &[good, noise], Rank::Truncated(8));
+    assert!(
+        disturbed.after > 1.5 * alone.after,
+        "{} {}",
+        disturbed.after,
+        alone.after
+    );
+}
+
+#[test]
+fn shifting_straight_from_the_neighbourhood_is_the_same() {
+    let catalogue = Catalogue::standard();
+    let heights = [yarn_like(&catalogue, BX, BY, 1)];
+    for rank in [Rank::Off, Rank::Truncated(15), Rank::Exact] {
+        let fix = fix(&heights, &catalogue, rank);
+        let mut random = Random(3);
+        for _ in 0..300 {
+            let mut around = random_neighbourhood(&catalogue, 1, &mut random);
+            around.sides[random.below(4)] = None;
+            let seam = fix.seam(&around, Face::Back);
+            let (x, y) = (random.below(BX), random.below(BY));
+            let (value, _, _) = fix.shift_and_gradient(&seam, x, y);
+            let direct = fix.shift_at(&around, Face::Back, x, y);
+            assert!((value - direct).abs() < 1e-4, "{value} {direct}");
+            assert!(rank != Rank::Off || value == 0.0);
+        }
+    }
+}
+
+#[test]
+fn gradients_are_slopes() {
+    let catalogue = Catalogue::paper();
+    let heights = [yarn_like(&catalogue, BX, BY, 1)];
+    let fix = fix(&heights, &catalogue, Rank::Truncated(15));
+    let mut random = Random(3);
+    let seam = fix.seam(
+        &random_neighbourhood(&catalogue, 1, &mut random),
+        Face::Front,
+    );
+    let at = |x, y| fix.shift(&seam, x, y);
+    let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} {b}");
+    let (value, dx, dy) = fix.shift_and_gradient(&seam, 5, 9);
+    close(value, at(5, 9));
+    close(dx, (at(6, 9) - at(4, 9)) / 2.0);
+    close(dy, (at(5, 10) - at(5, 8)) / 2.0);
+    let (_, dx, dy) = fix.shift_and_gradient(&seam, 0, BY - 1);
+    close(dx, at(1, BY - 1) - at(0, BY - 1));
+    close(dy, at(0, BY - 1) - at(0, BY - 2));
+}
+
+#[test]
+fn continuing_blocks_and_the_border_of_the_cloth_have_no_seam() {
+    let catalogue = Catalogue::standard();
+    let heights = [
+        yarn_like(&catalogue, BX, BY, 1),
+        yarn_like(&catalogue, BX, BY, 2),
+    ];
+    let fix = fix(&heights, &catalogue, Rank::Truncated(15));
+    let centre = BlockRef { set: 0, block: 7 };
+    let beside = Side::ALL.map(|side| BlockRef {
+        set: 0,
+        block: catalogue.neighbour(7, side).unwrap(),
+    });
+    let stacks = || (0..BY).flat_map(|y| (0..BX).map(move |x| (x, y)));
+    for sides in [[None; 4], beside.map(Some)] {
+        let around = Neighbourhood { centre, sides };
+        let seam = fix.seam(&around, Face::Front);
+        assert!(stacks().all(|(x, y)| fix.shift(&seam, x, y) == 0.0));
+    }
+    // The same neighbours in another set do make a seam.
+    let sides = beside.map(|beside| Some(BlockRef { set: 1, ..beside }));
+    let seam = fix.seam(&Neighbourhood { centre, sides }, Face::Front);
+    assert!(stacks().any(|(x, y)| fix.shift(&seam, x, y).abs() > 0.1));
+}
+
+/// The part of `rank`'s bound that random neighbourhoods leave, scaled by `shrink`: counts
+/// stacks whose shift lies outside.
+fn violations(bits: NeighbourBits, sampled: NeighbourBits, shrink: f32) -> u32 {
+    let catalogue = Catalogue::paper();
+    let heights = [
+        yarn_like(&catalogue, BX, BY, 1),
+        yarn_like(&catalogue, BX, BY, 2),
+    ];
+    let fix = fix(&heights, &catalogue, Rank::Truncated(6));
+    let mut random = Random(77);
+    let mut outside = 0;
+    for _ in 0..1500 {
+        let mut around = match sampled {
+            NeighbourBits::Any => random_neighbourhood(&catalogue, 2, &mut random),
+            NeighbourBits::Consistent => consistent_neighbourhood(&catalogue, 2, &mut random),
+        };
+        if random.below(4) == 0 {
+            around.sides[random.below(4)] = None;
+        }
+        for face in Face::ALL {
+            let bounds = fix.bounds(around.centre.set, around.centre.block, face, bits);
+            let seam = fix.seam(&around, face);
+            for y in 0..BY {
+                for x in 0..BX {
+                    let [low, high] =
+                        bounds[y / BOUND_COLUMN * BX.div_ceil(BOUND_COLUMN) + x / BOUND_COLUMN];
+                    assert!(low <= 0.0 && high >= 0.0);
+                    let value = fix.shift(&seam, x, y);
+                    outside += u32::from(value < low * shrink || value > high * shrink);
+                }
+            }
+        }
+    }
+    outside
+}
+
+#[test]
+fn bounds_hold_for_any_neighbours() {
+    assert_eq!(violations(NeighbourBits::Any, NeighbourBits::Any, 1.0), 0);
+    assert_eq!(
+        violations(NeighbourBits::Any, NeighbourBits::Consistent, 1.0),
+        0
+    );
+    assert!(violations(NeighbourBits::Any, NeighbourBits::Any, 0.7) > 0);
+}
+
+#[test]
+fn bounds_hold_for_consistent_neighbours_only() {
+    assert_eq!(
+        violations(NeighbourBits::Consistent, NeighbourBits::Consistent, 1.0),
+        0
+    );
+    assert!(violations(NeighbourBits::Consistent, NeighbourBits::Consistent, 0.7) > 0);
+    assert!(violations(NeighbourBits::Consistent, NeighbourBits::Any, 1.0) > 0);
+}
+
+#[test]
+fn every_block_size_and_rank_is_finite() {
+    let catalogue = Catalogue::paper();
+    for (bx, by) in [
+        (1, 1),
+        (1, 5),
+        (5, 1),
+        (2, 2),
+        (2, 7),
+        (3, 3),
+        (4, 9),
+        (33, 6),
+    ] {
+        let heights = [yarn_like(&catalogue, bx, by, 4)];
+        for rank in [
+            Rank::Off,
+            Rank::Truncated(1),
+            Rank::Truncated(15),
+            Rank::Truncated(u32::MAX),
+            Rank::Exact,
+        ] {
+            let fix = fix(&heights, &catalogue, rank);
+            let (across, along) = fix.ranks();
+            assert!(across <= by && along <= bx);
+            let mut random = Random(3);
+            let around = random_neighbourhood(&catalogue, 1, &mut random);
+            for face in Face::ALL {
+                let seam = fix.seam(&around, face);
+                for y in 0..by {
+                    for x in 0..bx {
+                        let (s, dx, dy) = fix.shift_and_gradient(&seam, x, y);
+                        assert!(s.is_finite() && dx.is_finite() && dy.is_finite());
+                        assert!(s.abs() < 100.0);
+                    }
+                }
+            }
+            let bounds = fix.bounds(0, 0, Face::Front, NeighbourBits::Any);
+            let columns = bx.div_ceil(BOUND_COLUMN) * by.div_ceil(BOUND_COLUMN);
+            assert_eq!(bounds.len(), if rank == Rank::Off { 0 } else { columns });
+        }
+    }
+}
+
+#[test]
+fn identical_seams_have_a_singular_gram_matrix_and_no_shift() {
+    let catalogue = Catalogue::standard();
+    let mut heights = EdgeHeights::flat(catalogue.blocks(), BX, BY);
+    let arch = |at: usize, length: usize| 30.0 + (at * (length - at)) as f32 * 0.1;
+    for (table, length) in [
+        (&mut heights.left, BY),
+        (&mut heights.right, BY),
+        (&mut heights.bottom, BX),
+        (&mut heights.top, BX),
+    ] {
+        for (at, height) in table.iter_mut().enumerate() {
+            *height = arch(at % length, length);
+        }
+    }
+    for heights in [heights, EdgeHeights::flat(catalogue.blocks(), BX, BY)] {
+        for rank in [Rank::Truncated(15), Rank::Exact] {
+            let fix = fix(std::slice::from_ref(&heights), &catalogue, rank);
+            let mut random = Random(1);
+            for _ in 0..100 {
+                let seam = fix.seam(
+                    &random_neighbourhood(&catalogue, 1, &mut random),
+                    Face::Front,
+                );
+                let value = fix.shift(&seam, random.below(BX), random.below(BY));
+                assert!(value.abs() < 1e-4, "{value}");
+            }
+            let measured = rms(&catalogue, std::slice::from_ref(&heights), rank);
+            assert!(measured.before == 0.0 && measured.after < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn huge_and_tiny_heights_stay_finite() {
+    let catalogue = Catalogue::paper();
+    for scale in [1e30f32, 1e-30, f32::MIN_POSITIVE / 8.0] {
+        let mut heights = yarn_like(&catalogue, 8, 8, 4);
+        for table in [
+            &mut heights.left,
+            &mut heights.right,
+            &mut heights.bottom,
+            &mut heights.top,
+        ] {
+            table.iter_mut().for_each(|height| *height *= scale);
+        }
+        let fix = fix(&[heights], &catalogue, Rank::Truncated(5));
+        let mut random = Random(1);
+        let seam = fix.seam(
+            &random_neighbourhood(&catalogue, 1, &mut random),
+            Face::Back,
+        );
+        assert!((0..8).all(|at| fix.shift(&seam, at, 7 - at).is_finite()));
+    }
+}
+
+#[test]
+fn heights_that_do_not_fit_are_refused_by_name() {
+    let catalogue = Catalogue::paper();
+    let good = yarn_like(&catalogue, 8, 8, 4);
+    let refused = |heights: &[EdgeHeights]| match EdgeFix::new(
+        heights,
+        &catalogue,
+        Rank::Truncated(5),
+        &Job::new(),
+    ) {
+        Err(error @ SynthesisError::Heights { .. }) => error.to_string(),
+        other => panic!("{:?}", other.map(|fix| fix.bytes())),
+    };
+    for poison in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let mut heights = good.clone();
+        heights.profile_mut(Face::Back, 17, Side::Below)[3] = poison;
+        let message = refused(&[good.clone(), heights]);
+        assert!(
+            message.contains("set 1") && message.contains("block 17"),
+            "{message}"
+        );
+    }
+    let mut short = good.clone();
+    short.top.pop();
+    assert!(refused(&[short]).contains("Above"));
+    assert!(refused(&[yarn_like(&Catalogue::standard(), 8, 8, 1)]).contains("blocks"));
+    assert!(refused(&[good.clone(), yarn_like(&catalogue, 8, 9, 1)]).contains("8 × 9"));
+    assert!(refused(&[EdgeHeights::flat(catalogue.blocks(), 0, 8)]).contains("0 × 8"));
+    assert!(EdgeFix::new(&[], &catalogue, Rank::Exact, &Job::new()).is_ok());
+    let job = Job::new();
+    job.cancel();
+    let cancelled = EdgeFix::new(&[good], &catalogue, Rank::Exact, &job);
+    assert!(matches!(cancelled, Err(SynthesisError::Cancelled(_))));
+}
+
+#[test]
+fn a_placement_shows_shifted_blocks_and_their_neighbours() {
+    let catalogue = Catalogue::standard();
+    let assignment = assigned(&catalogue, Method::Dp);
+    let placement = placement(&catalogue, &assignment);
+    for (end, pick) in [(0, 0), (-1, -1), (95, 40), (1000, -777)] {
+        let around = placement
+            .neighbourhood(end, pick, |end, _| (end & 1) as u16)
+            .unwrap();
+        assert_eq!(around.centre.block, placement.block(end, pick).unwrap());
+        assert_eq!(i64::from(around.centre.set), end & 1);
+        for side in Side::ALL {
+            let (dx, dy) = side.offset();
+            let neighbour = around.sides[side.index()].unwrap();
+            assert_eq!(
+                neighbour.block,
+                placement.block(end + dx, pick + dy).unwrap()
+            );
+            assert_eq!(i64::from(neighbour.set), (end + dx) & 1);
+        }
+    }
+}
