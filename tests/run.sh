@@ -148,7 +148,7 @@ with_display() {
 }
 
 smoke_window() {
-    with_display timeout 300 "$target/release/pickglass" twill --smoke-frames 20
+    with_display timeout 300 "$target/release/pickglass" oxford --smoke-frames 20
 }
 
 # With no display: the picture instead, and a line that says so.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
-use crate::stub::still::{EffectChoice, LightChoice};
 use crate::values::{self, Dial, PicturePath, SettArg, Size};
+use pickglass::still::{EffectChoice, LightChoice};
 
 /// Look closely at cloth that has not been woven yet.
 #[derive(Debug, Parser)]

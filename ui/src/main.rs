@@ -9,7 +9,6 @@ mod command_table;
 mod commands;
 mod opened;
 mod out;
-mod stub;
 mod tokens;
 mod values;
 mod window;

@@ -4,13 +4,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pickglass::design::{Design, Positions, Sett, Srgb, WeavePattern, YarnId};
+use pickglass::design::{Design, Positions, Sett, Srgb, WeavePattern};
+use pickglass::formats::{self, Imported, LoadOptions, presets};
 
 use crate::cli::SettArgs;
-use crate::stub::design::{self, Imported, LoadOptions};
 
 /// The preset that is shown when nothing is asked for.
-pub const DEFAULT_PRESET: &str = "herringbone";
+pub const DEFAULT_PRESET: &str = "default";
+
+/// A whole design larger than this is shown by its weave's repeat alone, threads.
+const LARGEST_WHOLE: u32 = 192;
 
 /// A design with the remarks made while reading it, and its drawdown worked out once.
 #[derive(Clone)]
@@ -28,25 +31,26 @@ impl Opened {
         let sett = sett
             .sett
             .map(|sett| (sett.ends_per_cm as f32, sett.picks_per_cm as f32));
-        match design::preset(argument) {
-            Some(mut design) => {
+        match presets::design(argument) {
+            Some(design) => {
+                let mut design = design?;
                 if let Some((ends, picks)) = sett {
                     design = design.with_sett(Sett::per_cm(ends, picks))?;
                 }
                 Ok(Self::new(design, Vec::new()))
             }
-            None => Self::load(Path::new(argument), &LoadOptions { sett }),
+            None if !argument.contains(['.', '/', '\\']) && !Path::new(argument).exists() => {
+                Err(no_such_preset(argument))
+            }
+            None => Self::load(Path::new(argument), &LoadOptions { sett, family: None }),
         }
     }
 
     /// Opens a preset by name.
     pub fn preset(name: &str) -> anyhow::Result<Self> {
-        match design::preset(name) {
-            Some(design) => Ok(Self::new(design, Vec::new())),
-            None => anyhow::bail!(
-                "{name}: no preset has this name: choose one of {}",
-                design::PRESETS.join(", ")
-            ),
+        match presets::design(name) {
+            Some(design) => Ok(Self::new(design?, Vec::new())),
+            None => Err(no_such_preset(name)),
         }
     }
 
@@ -56,7 +60,7 @@ impl Opened {
     }
 
     fn load(path: &Path, options: &LoadOptions) -> anyhow::Result<Self> {
-        let Imported { design, warnings } = design::load(path, options)?;
+        let Imported { design, warnings } = formats::load(path, options)?;
         Ok(Self::new(design, warnings))
     }
 
@@ -83,19 +87,32 @@ impl Opened {
         &self.weave
     }
 
-    /// The yarn on top at a crossing of the design.
-    pub fn yarn_on_top(&self, end: u32, pick: u32) -> YarnId {
+    /// Ends and picks that show the whole design, colours included: the cloth's own
+    /// repeat where that is small enough to look at, else the weave's.
+    pub fn whole(&self) -> (u32, u32) {
+        let (ends, picks) = (self.design.ends(), self.design.picks());
+        let (all_ends, all_picks) = self.design.cloth_repeat();
+        let bounded = |all: u64, own: u32| match u32::try_from(all) {
+            Ok(all) if all <= own.max(LARGEST_WHOLE) => all,
+            _ => own,
+        };
+        (bounded(all_ends, ends), bounded(all_picks, picks))
+    }
+
+    /// Whether the warp is on top at a crossing of the straight repeat.
+    pub fn warp_up(&self, end: u32, pick: u32) -> bool {
+        self.weave.get_wrapped(i64::from(end), i64::from(pick))
+    }
+
+    /// The colour on top at a crossing of the straight repeat.
+    pub fn colour_on_top(&self, end: u32, pick: u32) -> Srgb {
         let maps = self.design.maps();
-        if self.weave.get(end, pick) {
+        let yarn = if self.warp_up(end, pick) {
             maps.warp(i64::from(end), i64::from(pick))
         } else {
             maps.weft(i64::from(end), i64::from(pick))
-        }
-    }
-
-    /// The colour on top at a crossing of the design.
-    pub fn colour_on_top(&self, end: u32, pick: u32) -> Srgb {
-        self.design.yarn(self.yarn_on_top(end, pick)).colour
+        };
+        self.design.yarn(yarn).colour
     }
 
     /// The crossing at a point of the cloth (mm) in words; `None` where there is no cloth.
@@ -121,9 +138,26 @@ impl Opened {
 
     /// Size of one repeat of the weave, mm.
     pub fn size_mm(&self) -> [f32; 2] {
+        self.size_of((self.design.ends(), self.design.picks()))
+    }
+
+    /// Size of [`Self::whole`], mm.
+    pub fn whole_mm(&self) -> [f32; 2] {
+        self.size_of(self.whole())
+    }
+
+    fn size_of(&self, (ends, picks): (u32, u32)) -> [f32; 2] {
         [
-            self.ends.start(i64::from(self.design.ends())) as f32,
-            self.picks.start(i64::from(self.design.picks())) as f32,
+            self.ends.start(i64::from(ends)) as f32,
+            self.picks.start(i64::from(picks)) as f32,
         ]
     }
+}
+
+fn no_such_preset(name: &str) -> anyhow::Error {
+    let known: Vec<_> = presets::names().collect();
+    anyhow::anyhow!(
+        "{name}: no file and no preset is called this: give a .ron or .wif file, or one of {}",
+        known.join(", ")
+    )
 }

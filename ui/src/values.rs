@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
-use crate::stub::still::{EffectBase, EffectChoice, LightChoice};
+use pickglass::still::{EffectBase, EffectChoice, LightChoice};
 
 /// Threads per cm, along both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -44,7 +44,10 @@ fn refused(output: &Output, code: i32) -> String {
 #[test]
 fn check_has_the_keys_that_scripts_rely_on() {
     let folder = tempfile::tempdir().expect("a folder");
-    let report = json(&pickglass(folder.path(), &["check", "satin", "--json"]));
+    let report = json(&pickglass(
+        folder.path(),
+        &["check", "silk-satin", "--json"],
+    ));
     has_keys(
         &report,
         &[
@@ -69,7 +72,7 @@ fn the_sett_decides_the_scale() {
     let folder = tempfile::tempdir().expect("a folder");
     let report = json(&pickglass(
         folder.path(),
-        &["check", "twill", "--sett", "20x10", "--json"],
+        &["check", "oxford", "--sett", "20x10", "--json"],
     ));
     assert!((report["width_mm"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
     assert!((report["height_mm"].as_f64().expect("a number") - 4.0).abs() < 1e-4);
@@ -81,7 +84,7 @@ fn synthesize_has_the_keys_that_scripts_rely_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let report = json(&pickglass(
         folder.path(),
-        &["synthesize", "twill", "--json"],
+        &["synthesize", "oxford", "--json"],
     ));
     has_keys(
         &report,
@@ -104,7 +107,7 @@ fn synthesize_has_the_keys_that_scripts_rely_on() {
 fn a_still_is_written_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = [
-        "still", "twill", "-o", "a.png", "--size", "40x24", "--spp", "2", "--json",
+        "still", "oxford", "-o", "a.png", "--size", "40x24", "--spp", "2", "--json",
     ];
     let report = json(&pickglass(folder.path(), &line));
     has_keys(
@@ -136,11 +139,11 @@ fn errors_are_one_line_and_exit_1() {
     let folder = tempfile::tempdir().expect("a folder");
     for line in [
         &["check", "absent.wif"][..],
-        &["still", "twill", "-o", "absent/a.png"],
-        &["still", "twill", "-o", "a.png", "--renderer", "gpu"],
-        &["still", "twill", "-o", "a.png", "--renderer", "lumislice"],
-        &["still", "twill", "-o", "a.png", "--colourway", "autumn"],
-        &["convert", "twill", "out.unknown"],
+        &["still", "oxford", "-o", "absent/a.png"],
+        &["still", "oxford", "-o", "a.png", "--renderer", "gpu"],
+        &["still", "oxford", "-o", "a.png", "--renderer", "lumislice"],
+        &["still", "oxford", "-o", "a.png", "--colourway", "autumn"],
+        &["convert", "oxford", "out.unknown"],
     ] {
         let text = refused(&pickglass(folder.path(), line), 1);
         assert_eq!(text.trim_end().lines().count(), 1, "{line:?}: {text}");
@@ -156,13 +159,13 @@ fn errors_are_one_line_and_exit_1() {
 fn wrong_usage_exits_2() {
     let folder = tempfile::tempdir().expect("a folder");
     for line in [
-        &["still", "twill"][..],
-        &["still", "twill", "-o", "a.jpg"],
-        &["still", "twill", "-o", "a.png", "--size", "0x1"],
-        &["still", "twill", "-o", "a.png", "--spp", "0"],
+        &["still", "oxford"][..],
+        &["still", "oxford", "-o", "a.jpg"],
+        &["still", "oxford", "-o", "a.png", "--size", "0x1"],
+        &["still", "oxford", "-o", "a.png", "--spp", "0"],
         &[
             "still",
-            "twill",
+            "oxford",
             "-o",
             "a.png",
             "--spp",
@@ -170,11 +173,11 @@ fn wrong_usage_exits_2() {
             "--seconds",
             "1",
         ],
-        &["still", "twill", "-o", "a.png", "--view", "above"],
-        &["still", "twill", "-o", "a.png", "--light", "candle"],
-        &["check", "twill", "--sett", "zero"],
+        &["still", "oxford", "-o", "a.png", "--view", "above"],
+        &["still", "oxford", "-o", "a.png", "--light", "candle"],
+        &["check", "oxford", "--sett", "zero"],
         &["check"],
-        &["check", "twill", "--unknown"],
+        &["check", "oxford", "--unknown"],
     ] {
         refused(&pickglass(folder.path(), line), 2);
     }
@@ -183,7 +186,7 @@ fn wrong_usage_exits_2() {
 #[test]
 fn a_closed_pipe_is_not_a_panic() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_pickglass"))
-        .args(["check", "twill"])
+        .args(["check", "oxford"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -8,7 +8,7 @@ use super::{check_output, note_warnings, seconds_json};
 use crate::cli::{RendererArg, StillArgs};
 use crate::opened::Opened;
 use crate::out::{self, Progress};
-use crate::stub::still::{self, StillReport, StillRequest, Stop};
+use pickglass::still::{self, StillReport, StillRequest, Stop};
 
 /// Paths per pixel when no way to stop is given.
 const USUAL_SPP: u32 = 64;
@@ -21,7 +21,7 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     note_warnings(&opened.warnings);
     if let Some(colourway) = &args.colourway {
         anyhow::bail!(
-            "colourway {colourway}: {} has one colourway only: leave out --colourway",
+            "colourway {colourway}: {} has its own yarns only: leave out --colourway",
             opened.name()
         );
     }
@@ -130,5 +130,6 @@ fn request(args: &StillArgs) -> StillRequest {
             .collect(),
         seed: args.seed,
         stop,
+        colourway: args.colourway.clone(),
     }
 }

@@ -8,8 +8,8 @@ use super::{note_warnings, still};
 use crate::cli::WindowArgs;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
-use crate::stub::still::{StillRequest, Stop};
 use crate::window::{self, NoWindow};
+use pickglass::still::{StillRequest, Stop};
 
 /// Where the picture goes when no window can open.
 const FALLBACK_PICTURE: &str = "cloth.png";

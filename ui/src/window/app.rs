@@ -1,6 +1,8 @@
 //! The viewer: its state, its layout and what its commands do.
 
 use egui::{CentralPanel, Frame, Id, Panel, Rect, RichText, ViewportCommand, pos2, vec2};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::presets;
 use pickglass::render::View;
 
 use super::cloth_pane::ClothPane;
@@ -14,9 +16,8 @@ use super::view::ClothView;
 use super::worker::{ClothWorker, Phase, PreviewRequest};
 use crate::command_table::Command;
 use crate::opened::Opened;
-use crate::stub::design::PRESETS;
-use crate::stub::still::{LightChoice, StillRequest, usual_width_mm};
 use crate::tokens::{self, Palette};
+use pickglass::still::{EffectChoice, LightChoice, StillRequest, usual_width_mm};
 
 /// One step of the zoom keys.
 const ZOOM_STEP: f32 = 1.25;
@@ -24,6 +25,24 @@ const ZOOM_STEP: f32 = 1.25;
 const ACTUAL_SIZE: f32 = 25.4 / 96.0;
 /// A preview has at most this many pixels; beyond, it is drawn smaller and stretched.
 const MOST_PIXELS: f32 = 4.0e6;
+
+/// How previews are made.
+pub struct PreviewSettings {
+    pub store: ExemplarStore,
+    pub effects: EffectChoice,
+    pub dials: Vec<(String, String)>,
+}
+
+impl Default for PreviewSettings {
+    fn default() -> Self {
+        Self {
+            store: ExemplarStore::user(),
+            effects: EffectChoice::default(),
+            // Each pass is shown.
+            dials: vec![("pass-spp".to_owned(), "1".to_owned())],
+        }
+    }
+}
 
 /// The window's state.
 pub struct Viewer {
@@ -34,6 +53,8 @@ pub struct Viewer {
     cloth_view: Option<ClothView>,
     /// Whether a view set anew shows the whole repeat, or the view's usual width.
     fit: bool,
+    effects: EffectChoice,
+    dials: Vec<(String, String)>,
     pane: ClothPane,
     /// What was last asked of the worker.
     asked: Option<StillRequest>,
@@ -54,7 +75,11 @@ pub struct Viewer {
 
 impl Viewer {
     /// A viewer of a design, or of nothing yet.
-    pub fn new(ctx: &egui::Context, opened: Option<Opened>) -> std::io::Result<Self> {
+    pub fn new(
+        ctx: &egui::Context,
+        opened: Option<Opened>,
+        preview: PreviewSettings,
+    ) -> std::io::Result<Self> {
         tokens::apply(ctx);
         let wake = ctx.clone();
         let mut viewer = Self {
@@ -63,10 +88,12 @@ impl Viewer {
             light: LightChoice::default(),
             cloth_view: None,
             fit: false,
+            effects: preview.effects,
+            dials: preview.dials,
             pane: ClothPane::default(),
             asked: None,
             generation: 0,
-            worker: ClothWorker::start(move || wake.request_repaint())?,
+            worker: ClothWorker::start(preview.store, move || wake.request_repaint())?,
             reported_failure: None,
             strip: Strip::default(),
             show_strip: true,
@@ -141,6 +168,10 @@ impl Viewer {
             && picture.generation == self.generation
         {
             self.pane.take(ctx, picture);
+        }
+        if let Some(error) = self.worker.take_failure() {
+            self.toasts
+                .say(Grade::Error, error, "The coarse cloth is still shown.");
         }
         if let Phase::Failed(error) = self.worker.phase()
             && self.reported_failure.as_ref() != Some(&error)
@@ -220,9 +251,9 @@ impl Viewer {
     }
 
     fn initial_view(&self, pane: Rect, opened: &Opened) -> ClothView {
-        let middle = opened.size_mm().map(|mm| mm / 2.0);
+        let middle = opened.whole_mm().map(|mm| mm / 2.0);
         let mut view = if self.fit {
-            ClothView::fitting(pane, middle, opened.size_mm())
+            ClothView::fitting(pane, middle, opened.whole_mm())
         } else {
             ClothView::across(pane, middle, usual_width_mm(self.view, &opened.design))
         };
@@ -246,6 +277,8 @@ impl Viewer {
             width_mm: Some(view.width_mm(pane)),
             centre_mm: Some(view.centre_mm),
             light: self.light.clone(),
+            effects: self.effects.clone(),
+            dials: self.dials.clone(),
             ..StillRequest::default()
         };
         if self.asked.as_ref() == Some(&still) {
@@ -295,6 +328,7 @@ impl Viewer {
                 opened: self.opened.as_ref(),
                 shown: self.pane.shown.as_ref(),
                 phase: &phase,
+                building: self.worker.building(),
                 paused: self.paused,
                 export: self.export.progress(),
                 reading: self.files.reading(),
@@ -317,7 +351,7 @@ impl Viewer {
         };
         let shown = self.shown_in_repeats(opened);
         if let Some(at) = self.strip.show(ui, opened, shown) {
-            let size = opened.size_mm();
+            let size = opened.whole_mm();
             let centre = [at[0] * size[0], at[1] * size[1]];
             self.rescale(|view| view.centre_mm = centre);
         }
@@ -327,7 +361,7 @@ impl Viewer {
     fn shown_in_repeats(&self, opened: &Opened) -> Option<Rect> {
         let still = self.asked.as_ref()?;
         let (centre, width) = (still.centre_mm?, still.width_mm?);
-        let size = opened.size_mm();
+        let size = opened.whole_mm();
         let height = width * still.height as f32 / still.width.max(1) as f32;
         let home = |mm: f32, repeat: f32| (mm / repeat).rem_euclid(1.0);
         let rect = Rect::from_center_size(
@@ -366,10 +400,9 @@ impl Viewer {
     fn busy_ui(&mut self, ui: &mut egui::Ui, pane: Rect) {
         let phase = self.worker.phase();
         plate(ui, pane, |ui| match phase {
-            Phase::Preparing { stage, fraction } => {
+            Phase::Preparing => {
                 ui.label(RichText::new("Preparing the cloth").text_style(egui::TextStyle::Heading));
-                ui.label(stage);
-                ui.add(egui::ProgressBar::new(fraction).desired_width(tokens::STRIP_WIDTH));
+                ui.spinner();
                 if ui.button("Stop").clicked() {
                     self.paused = true;
                     self.worker.stop();
@@ -408,7 +441,7 @@ impl Viewer {
                 self.files.ask(&ctx);
             }
             ui.add_space(tokens::GAP);
-            for &preset in PRESETS {
+            for preset in presets::names() {
                 if ui.button(preset).clicked() {
                     self.files.open_preset(&ctx, preset);
                 }
@@ -465,12 +498,15 @@ fn hovered_ui(ctx: &egui::Context, pane: Rect) {
 
 #[cfg(test)]
 impl Viewer {
-    /// Paths per pixel of the picture shown, 0 while it is a coarse one.
-    pub fn full_size_spp(&self) -> u32 {
-        self.pane
-            .shown
-            .as_ref()
-            .map_or(0, |shown| if shown.full_size { shown.spp } else { 0 })
+    /// Whether a picture is shown.
+    pub fn has_picture(&self) -> bool {
+        self.pane.shown.is_some()
+    }
+
+    /// Whether the picture is of full size and from the full exemplars.
+    pub fn has_full_picture(&self) -> bool {
+        let full = |shown: &super::cloth_pane::Shown| shown.full_size && shown.full_cloth;
+        self.pane.shown.as_ref().is_some_and(full)
     }
 
     pub fn asked_view(&self) -> Option<View> {
@@ -492,6 +528,7 @@ impl Viewer {
     pub fn pause(&mut self) {
         self.paused = true;
         self.worker.stop();
+        self.generation += 1;
         self.pane.shown = None;
         self.asked = None;
     }

@@ -7,8 +7,8 @@ use egui::{
 
 use super::view::{ClothView, scale_bar};
 use super::worker::Picture;
-use crate::stub::still::StillRequest;
 use crate::tokens::{self, Palette};
+use pickglass::still::StillRequest;
 
 /// One notch of a wheel zooms by about this much.
 const ZOOM_A_POINT: f32 = 0.004;
@@ -22,6 +22,7 @@ pub struct Shown {
     pub seconds: f64,
     pub error: Option<f64>,
     pub full_size: bool,
+    pub full_cloth: bool,
     texture: TextureHandle,
 }
 
@@ -47,6 +48,7 @@ impl ClothPane {
             seconds: picture.seconds,
             error: picture.error,
             full_size: picture.full_size,
+            full_cloth: picture.full_cloth,
             texture,
         });
     }

@@ -10,9 +10,9 @@ use super::icons;
 use super::task::{Outcome, Task};
 use super::toasts::Grade;
 use crate::opened::Opened;
-use crate::stub::still::{self, StillError, StillReport, StillRequest, Stop};
 use crate::tokens::{self, Palette};
 use crate::values;
+use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
 
 /// What became of an export.
 pub enum Exported {

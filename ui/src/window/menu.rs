@@ -1,12 +1,12 @@
 //! The menu bar and the help sheet, both made from the command table.
 
 use egui::{Button, Grid, Id, MenuBar, Modal, RichText};
+use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
 
 use crate::command_table::{Command, Menu, TABLE};
-use crate::stub::design::PRESETS;
-use crate::stub::still::LightChoice;
 use crate::tokens::{self, Palette};
+use pickglass::still::LightChoice;
 
 /// What was chosen.
 pub enum Choice {
@@ -91,7 +91,7 @@ fn row_ui(
 fn presets_ui(ui: &mut egui::Ui) -> Option<Choice> {
     let mut choice = None;
     ui.menu_button("Presets", |ui| {
-        for &preset in PRESETS {
+        for preset in presets::names() {
             if ui.button(preset).clicked() {
                 choice = Some(Choice::Preset(preset));
                 ui.close();

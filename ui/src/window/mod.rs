@@ -23,6 +23,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::opened::Opened;
+use app::PreviewSettings;
 
 /// Why there is no window.
 pub enum NoWindow {
@@ -54,7 +55,7 @@ pub fn run(opened: Opened, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
         "pickglass",
         options,
         Box::new(move |cc| {
-            let viewer = app::Viewer::new(&cc.egui_ctx, Some(opened))?;
+            let viewer = app::Viewer::new(&cc.egui_ctx, Some(opened), PreviewSettings::default())?;
             created.store(true, Ordering::Relaxed);
             Ok(Box::new(viewer.closing_after(smoke_frames)))
         }),

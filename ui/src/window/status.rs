@@ -5,7 +5,7 @@ use egui::{ProgressBar, RichText};
 use super::cloth_pane::Shown;
 use super::icons;
 use super::toasts::Grade;
-use super::worker::Phase;
+use super::worker::{Building, Phase};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 
@@ -14,6 +14,7 @@ pub struct Status<'s> {
     pub opened: Option<&'s Opened>,
     pub shown: Option<&'s Shown>,
     pub phase: &'s Phase,
+    pub building: Option<Building>,
     pub paused: bool,
     pub export: Option<String>,
     /// The file that is being read.
@@ -66,28 +67,24 @@ pub fn show(ui: &mut egui::Ui, status: &Status<'_>) -> Option<Cancel> {
 /// The right end, laid out from right to left; true when its button was clicked.
 fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
     let palette = Palette::current(ui);
-    match status.phase {
-        Phase::Preparing { stage, fraction } => {
-            let cancelled = ui.small_button("Cancel").clicked();
-            ui.add(
-                ProgressBar::new(*fraction)
-                    .desired_width(tokens::SCALE_BAR)
-                    .desired_height(tokens::GAP),
-            );
-            ui.label(stage);
-            return cancelled;
-        }
-        Phase::Failed(_) => {
-            ui.label(RichText::new("Error: not drawn").color(palette.error));
-            icons::show(ui, Grade::Error, palette.error);
-        }
-        _ => {
-            if let Some(shown) = status.shown {
-                ui.label(quality(shown, status));
-            }
-        }
+    let mut cancelled = false;
+    if let Some(Building { stage, fraction }) = &status.building {
+        cancelled = ui.small_button("Cancel").clicked();
+        ui.add(
+            ProgressBar::new(*fraction)
+                .desired_width(tokens::SCALE_BAR)
+                .desired_height(tokens::GAP),
+        );
+        ui.label(stage);
+        ui.separator();
     }
-    false
+    if let Phase::Failed(_) = status.phase {
+        ui.label(RichText::new("Error: not drawn").color(palette.error));
+        icons::show(ui, Grade::Error, palette.error);
+    } else if let Some(shown) = status.shown {
+        ui.label(quality(shown, status));
+    }
+    cancelled
 }
 
 fn quality(shown: &Shown, status: &Status<'_>) -> String {
@@ -98,6 +95,7 @@ fn quality(shown: &Shown, status: &Status<'_>) -> String {
         _ if status.paused => " · paused",
         Phase::Stopped => " · stopped",
         Phase::Done => " · done",
+        _ if !shown.full_cloth => " · coarse fibres",
         _ if !shown.full_size => " · coarse",
         _ => "",
     };

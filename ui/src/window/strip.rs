@@ -139,7 +139,7 @@ fn snapped(place: Rect, size: egui::Vec2, density: f32) -> Rect {
 
 /// Draws one repeat into at most `room` pixels.
 fn draw(opened: &Opened, room: [usize; 2]) -> Drawdown {
-    let (ends, picks) = (opened.weave().ends(), opened.weave().picks());
+    let (ends, picks) = opened.whole();
     let cell = (room[0] / ends as usize)
         .min(room[1] / picks as usize)
         .min(LARGEST_CELL);
@@ -161,7 +161,7 @@ fn draw(opened: &Opened, room: [usize; 2]) -> Drawdown {
 /// Each crossing as a square of `cell` pixels. The sides along which the yarn on top
 /// lies are shaded, so that equal colours can be told apart.
 fn draw_cells(opened: &Opened, cell: usize) -> ColorImage {
-    let (ends, picks) = (opened.weave().ends(), opened.weave().picks());
+    let (ends, picks) = opened.whole();
     let (width, height) = (ends as usize * cell, picks as usize * cell);
     let mut image = ColorImage::filled([width, height], Color32::BLACK);
     for pick in 0..picks {
@@ -171,7 +171,7 @@ fn draw_cells(opened: &Opened, cell: usize) -> ColorImage {
             let Srgb(red, green, blue) = opened.colour_on_top(end, pick);
             let colour = tokens::yarn_colour(red, green, blue);
             let shaded = colour.lerp_to_gamma(Color32::BLACK, 0.28);
-            let up = opened.weave().get(end, pick);
+            let up = opened.warp_up(end, pick);
             for y in 0..cell {
                 for x in 0..cell {
                     let across = if up { x } else { y };
@@ -200,7 +200,7 @@ fn grid_line(on_end: bool, end: u32, on_pick: bool, pick: u32) -> Color32 {
 
 /// Each pixel as the mean of `step` × `step` crossings, in linear light.
 fn draw_means(opened: &Opened, step: u32) -> ColorImage {
-    let (ends, picks) = (opened.weave().ends(), opened.weave().picks());
+    let (ends, picks) = opened.whole();
     let size = [ends.div_ceil(step) as usize, picks.div_ceil(step) as usize];
     let mut image = ColorImage::filled(size, Color32::BLACK);
     for y in 0..size[1] {
@@ -276,14 +276,15 @@ mod tests {
 
     #[test]
     fn the_drawdown_shows_the_yarn_on_top_with_pick_0_below() {
-        let opened = Opened::preset("twill").expect("a preset");
+        let opened = Opened::preset("herringbone").expect("a preset");
         let cell = 5;
         let image = draw_cells(&opened, cell);
-        for pick in 0..opened.weave().picks() {
-            for end in 0..opened.weave().ends() {
+        let (ends, picks) = opened.whole();
+        for pick in 0..picks {
+            for end in 0..ends {
                 let Srgb(red, green, blue) = opened.colour_on_top(end, pick);
                 let x = end as usize * cell + cell / 2;
-                let y = (opened.weave().picks() - 1 - pick) as usize * cell + cell / 2;
+                let y = (picks - 1 - pick) as usize * cell + cell / 2;
                 assert_eq!(image[(x, y)], tokens::yarn_colour(red, green, blue));
             }
         }
@@ -291,11 +292,13 @@ mod tests {
 
     #[test]
     fn a_design_larger_than_the_room_is_averaged() {
-        let opened = Opened::preset("plain").expect("a preset");
+        let opened = Opened::preset("herringbone").expect("a preset");
+        let (ends, picks) = opened.whole();
+        let largest = ends.max(picks);
         let drawdown = draw(&opened, [1, 1]);
         assert_eq!(
             (drawdown.image.size, drawdown.crossings_a_pixel),
-            ([1, 1], 2)
+            ([1, 1], largest)
         );
     }
 }

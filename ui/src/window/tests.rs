@@ -10,8 +10,10 @@ use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::WgpuTestRenderer;
 use egui_kittest::{Harness, HarnessBuilder, SnapshotOptions};
 
-use super::app::Viewer;
-use crate::opened::{DEFAULT_PRESET, Opened};
+use super::app::{PreviewSettings, Viewer};
+use crate::opened::Opened;
+use pickglass::exemplar::ExemplarStore;
+use pickglass::still::{EffectBase, EffectChoice};
 
 type Window = Harness<'static, Viewer>;
 
@@ -21,9 +23,22 @@ fn builder() -> HarnessBuilder<Viewer> {
         .with_theme(egui::Theme::Dark)
 }
 
+/// Pictures that are there at once: what they look like is tested elsewhere.
+fn crude() -> PreviewSettings {
+    let dial = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    PreviewSettings {
+        store: ExemplarStore::user(),
+        effects: EffectChoice {
+            base: EffectBase::None,
+            changes: Vec::new(),
+        },
+        dials: vec![dial("pass-spp", "1"), dial("level", "4")],
+    }
+}
+
 fn build(builder: HarnessBuilder<Viewer>, design: Option<&str>) -> Window {
     let opened = design.map(|name| Opened::preset(name).expect("a preset"));
-    builder.build_eframe(|cc| Viewer::new(&cc.egui_ctx, opened).expect("a worker"))
+    builder.build_eframe(|cc| Viewer::new(&cc.egui_ctx, opened, crude()).expect("a worker"))
 }
 
 /// Lets the window and its threads go on until `done`.
@@ -52,27 +67,27 @@ fn says(window: &Window, part: &str) -> bool {
 
 #[test]
 fn a_design_is_shown_and_refines() {
-    let mut window = build(builder(), Some("twill"));
+    let mut window = build(builder(), Some("oxford"));
     wait_for(&mut window, "a full picture", |window| {
-        window.state().full_size_spp() > 1
+        window.state().has_full_picture()
     });
-    assert!(shows(&window, "Cloth of twill"));
-    assert!(shows(&window, "Drawdown of twill"));
-    assert!(says(&window, "4 ends × 4 picks"));
+    assert!(shows(&window, "Cloth of Oxford"));
+    assert!(shows(&window, "Drawdown of Oxford"));
+    assert!(says(&window, "4 ends × 2 picks"));
     assert!(says(&window, " spp · "));
 }
 
 #[test]
 fn the_menus_open_presets_and_change_the_view() {
-    let mut window = build(builder(), Some("twill"));
+    let mut window = build(builder(), Some("oxford"));
     window.step();
     window.get_by_label("File").click();
     window.run_steps(3);
     window.get_by_label_contains("Presets").click();
     window.run_steps(3);
-    window.get_by_label("satin").click();
+    window.get_by_label("silk-satin").click();
     wait_for(&mut window, "the satin", |window| {
-        shows(window, "Cloth of satin")
+        shows(window, "Cloth of Silk satin")
     });
 
     window.get_by_label("View").click();
@@ -95,7 +110,7 @@ fn every_command_of_a_menu_is_there_by_its_label() {
         (Menu::View, "View"),
         (Menu::Help, "Help"),
     ] {
-        let mut window = build(builder(), Some("twill"));
+        let mut window = build(builder(), Some("oxford"));
         window.step();
         window.get_by_label(label).click();
         window.run_steps(3);
@@ -115,14 +130,14 @@ fn open_by_path(window: &mut Window, path: &str) {
 
 #[test]
 fn a_missing_file_is_an_error_and_the_design_stays() {
-    let mut window = build(builder(), Some("twill"));
+    let mut window = build(builder(), Some("oxford"));
     window.step();
     // Letters that are shortcuts elsewhere are letters in the field.
     open_by_path(&mut window, "/absent/fdpt1.wif");
     wait_for(&mut window, "the message", |window| says(window, "Error"));
     assert!(says(&window, "/absent/fdpt1.wif"));
-    assert!(shows(&window, "twill is still open."));
-    assert!(shows(&window, "Drawdown of twill"));
+    assert!(shows(&window, "Oxford is still open."));
+    assert!(shows(&window, "Drawdown of Oxford"));
     window.run_steps(3);
     window.get_by_label("Dismiss").click();
     wait_for(&mut window, "its end", |window| !says(window, "Error"));
@@ -170,11 +185,11 @@ fn a_dropped_file_opens() {
 
 #[test]
 fn dragging_moves_the_cloth_and_the_wheel_zooms_at_the_pointer() {
-    let mut window = build(builder(), Some("twill"));
+    let mut window = build(builder(), Some("oxford"));
     window.step();
     let before = window.state().cloth_view().expect("a view");
     wait_for(&mut window, "a picture", |window| {
-        window.state().full_size_spp() >= 1
+        window.state().has_picture()
     });
     let start = pos2(600.0, 300.0);
     window.hover_at(start);
@@ -204,7 +219,7 @@ fn dragging_moves_the_cloth_and_the_wheel_zooms_at_the_pointer() {
 
 #[test]
 fn stopping_says_so_and_can_be_undone() {
-    let mut window = build(builder(), Some("twill"));
+    let mut window = build(builder(), Some("oxford"));
     window.step();
     window.key_press(Key::P);
     wait_for(&mut window, "the stop", |window| {
@@ -212,7 +227,7 @@ fn stopping_says_so_and_can_be_undone() {
     });
     window.key_press(Key::P);
     wait_for(&mut window, "a picture", |window| {
-        window.state().full_size_spp() >= 1
+        window.state().has_picture()
     });
 }
 
@@ -220,9 +235,9 @@ fn stopping_says_so_and_can_be_undone() {
 fn the_export_form_renders_into_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("out.png");
-    let mut window = build(builder(), Some("twill"));
+    let mut window = build(builder(), Some("oxford"));
     wait_for(&mut window, "a picture", |window| {
-        window.state().full_size_spp() >= 1
+        window.state().has_picture()
     });
     window.state_mut().set_export_defaults(64, 0.1, &path);
     window.key_press_modifiers(Modifiers::COMMAND, Key::E);
@@ -268,7 +283,7 @@ fn picture_of_a_design() {
     let Some(renderer) = renderer("picture_of_a_design") else {
         return;
     };
-    let mut window = build(builder().renderer(renderer), Some(DEFAULT_PRESET));
+    let mut window = build(builder().renderer(renderer), Some("herringbone"));
     // The cloth itself is another test's business: stop it before it is drawn.
     window.state_mut().pause();
     window.run_steps(5);
