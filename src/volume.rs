@@ -362,8 +362,9 @@ pub struct GridWalk<'g> {
     far: IVec3,
     /// The brick to be visited next.
     next: IVec3,
-    /// The brick of the current stretch.
+    /// The brick of the current stretch, and where its voxels begin.
     brick: IVec3,
+    first_voxel: usize,
     t: f32,
     end: f32,
 }
@@ -390,7 +391,8 @@ impl<'g> GridWalk<'g> {
         let end = leave.min_element().min(t_max);
         let inside = !still_outside.any() && start < end;
         let entry = origin + direction * if inside { start } else { 0.0 };
-        let cell = entry.floor().as_ivec3().clamp(IVec3::ZERO, grid.size - 1);
+        let cell = IVec3::new(floor(entry.x), floor(entry.y), floor(entry.z));
+        let cell = cell.clamp(IVec3::ZERO, grid.size - 1);
         let brick = cell >> 2;
         Self {
             grid,
@@ -401,6 +403,7 @@ impl<'g> GridWalk<'g> {
             far,
             next: brick,
             brick,
+            first_voxel: 0,
             t: start,
             end: if inside { end } else { f32::NEG_INFINITY },
         }
@@ -451,8 +454,10 @@ impl MajorantWalk for GridWalk<'_> {
             if brick.cmplt(IVec3::ZERO).any() || brick.cmpge(self.grid.bricks).any() {
                 return None;
             }
-            let majorant = self.grid.majorants[index(self.grid.bricks, brick)];
+            let number = index(self.grid.bricks, brick);
+            let majorant = self.grid.majorants[number];
             if majorant > 0.0 {
+                self.first_voxel = number * BRICK_VOXELS;
                 let (exit, axis) = self.exit(brick, BRICK);
                 let start = self.t;
                 let end = exit.max(start).min(self.end);
@@ -479,22 +484,36 @@ impl MajorantWalk for GridWalk<'_> {
         None
     }
 
-    #[inline]
+    #[inline(always)]
     fn voxel(&self, t: f32, tap: Vec3) -> Voxel {
         let point = self.origin + self.direction * t;
         let grid = self.grid;
         // Rounding may put the point just outside its brick, whose majorant holds here.
         let low = self.brick * BRICK;
-        let cell = match grid.taps {
-            Taps::Nearest => point.floor().as_ivec3().clamp(low, low + BRICK - 1),
-            Taps::StochasticTrilinear => (point + tap - 0.5)
-                .floor()
-                .as_ivec3()
-                .clamp(low - 1, low + BRICK)
-                .clamp(IVec3::ZERO, grid.size - 1),
+        let number = match grid.taps {
+            Taps::Nearest => {
+                let inside = |axis: usize| (floor(point[axis]) - low[axis]).clamp(0, BRICK - 1);
+                self.first_voxel + ((inside(2) << 4) | (inside(1) << 2) | inside(0)) as usize
+            }
+            Taps::StochasticTrilinear => {
+                let shifted = point + tap - 0.5;
+                let cell = IVec3::new(floor(shifted.x), floor(shifted.y), floor(shifted.z))
+                    .clamp(low - 1, low + BRICK)
+                    .clamp(IVec3::ZERO, grid.size - 1);
+                voxel_index(grid.bricks, cell)
+            }
         };
-        grid.unpack(grid.voxels[voxel_index(grid.bricks, cell)])
+        grid.unpack(grid.voxels[number])
     }
+}
+
+/// The whole number below `x`, for |x| < 2²¹; on a whole number, it or the one below.
+/// Anything else gives some number. Adding 1.5·2²³ rounds to the nearest whole number
+/// without a library call.
+#[inline(always)]
+fn floor(x: f32) -> i32 {
+    const SHIFT: f32 = 12_582_912.0;
+    ((x - 0.5) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }
 
 /// The SGGX matrix I − (1−α²)ttᵀ of a voxel, for formats that store matrices.

@@ -1,5 +1,7 @@
 //! Design documents: what is written is what is read, and nothing else is accepted.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use pickglass::design::{
     Corrections, Density, Design, Family, Fill, FirstEnd, ForeignSection, Grid, Lattice, Region,
     Regions, Repeat, Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps,
@@ -58,13 +60,13 @@ fn everything() -> Design {
             along: Repeat::None,
         })
         .unwrap();
-    design.notes = vec!["first".into(), "second \\ \"quoted\"\n".into()];
+    design.notes = "first\nsecond \\ \"quoted\"".into();
     design.origin.first_end = FirstEnd::Right;
     design.origin.program = Some("Other".into());
     design.origin.palette = vec![Srgb(9, 8, 7)];
     design.origin.sections = vec![ForeignSection {
         name: "PRIVATE X".into(),
-        lines: vec!["a=b".into(), ";".into()],
+        text: "a=b\n;".into(),
     }];
     design
 }

@@ -3,6 +3,8 @@
 //! Each preset is described here once more, by formula; the embedded document must say the
 //! same. With `PICKGLASS_WRITE_PRESETS=1` the documents are written anew instead.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use std::path::Path;
 
 use pickglass::design::{
@@ -40,7 +42,7 @@ fn design(
 ) -> Design {
     let sett = Sett::per_cm(sett.0, sett.1);
     let mut design = Design::new(name, structure, yarns, maps, sett).unwrap();
-    design.notes = vec![note.to_owned()];
+    design.notes = note.to_owned();
     design
 }
 

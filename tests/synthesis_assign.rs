@@ -1,5 +1,7 @@
 //! Catalogue, assignment, editing, randomisation: Zhao 2012 §5.3–5.4.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use pickglass::design::{Lattice, Repeat, WeavePattern};
 use pickglass::job::Job;
 use pickglass::synthesis::{
@@ -290,6 +292,91 @@ fn dp_equals_the_papers_recursion() {
                     let got = continuous_pairs(&catalogue, assignment.column(end), cyclic);
                     assert_eq!(got, dp_oracle(&catalogue, &keys, cyclic), "end {end}");
                 }
+            }
+        }
+    }
+}
+
+/// A pattern three ends wide, pieced together from rows of the exemplars.
+fn pieces(catalogue: &Catalogue, picks: u32, next: &mut impl FnMut(u32) -> u32) -> WeavePattern {
+    let weaves = catalogue.weaves();
+    let (mut exemplar, mut y) = (0, 0);
+    let rows: Vec<(usize, u32)> = (0..picks)
+        .map(|_| {
+            if next(4) == 0 {
+                exemplar = next(weaves.len() as u32) as usize;
+                y = next(weaves[exemplar].picks());
+            }
+            y = (y + 1) % weaves[exemplar].picks();
+            (exemplar, y)
+        })
+        .collect();
+    WeavePattern::from_fn(3, picks, |end, pick| {
+        let (exemplar, y) = rows[pick as usize];
+        weaves[exemplar].get(end, y)
+    })
+}
+
+#[test]
+fn dp_is_optimal_for_made_up_exemplars() {
+    let mut state = 1u64;
+    let mut next = move |below: u32| {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as u32 % below
+    };
+    let mut start_matters = 0;
+    for _ in 0..4000 {
+        let weaves: Vec<_> = (0..1 + next(3))
+            .map(|_| {
+                let picks = 2 + next(7);
+                let bits: Vec<bool> = (0..3 * picks).map(|_| next(3) == 0).collect();
+                WeavePattern::from_fn(3, picks, |end, pick| bits[(3 * pick + end) as usize])
+            })
+            .collect();
+        let wraps = weaves.iter().map(|_| [true, next(2) == 0]).collect();
+        let Ok(catalogue) = Catalogue::new(weaves, wraps) else {
+            continue;
+        };
+        let picks = 1 + next(16);
+        let pattern = pieces(&catalogue, picks, &mut next);
+        for (lattice, cyclic) in [(CYCLIC, true), (OPEN, false)] {
+            let assignment = built(&pattern, lattice, &catalogue, Method::Dp);
+            for end in 0..3 {
+                let keys = column_keys(&pattern, lattice, end);
+                let best = dp_oracle(&catalogue, &keys, cyclic);
+                let got = continuous_pairs(&catalogue, assignment.column(end), cyclic);
+                assert_eq!(got, best, "{keys:?}");
+                start_matters += u32::from(cyclic && best > dp_oracle(&catalogue, &keys, false));
+            }
+        }
+    }
+    // Columns whose last row continues in the first, so that row 0 is a bad start.
+    assert!(start_matters > 500, "only {start_matters}");
+}
+
+#[test]
+fn thin_and_uneven_designs_are_assigned_like_any() {
+    let catalogue = Catalogue::standard();
+    let satin_8 = |end: u32, pick: u32| (5 * end + 8 * pick - pick).is_multiple_of(8);
+    let patterns = [
+        WeavePattern::from_fn(1, 9, |_, pick| pick % 3 == 0),
+        WeavePattern::from_fn(9, 1, |end, _| end % 2 == 0),
+        WeavePattern::from_fn(2, 2, |end, pick| end == pick),
+        WeavePattern::from_fn(16, 16, |_, _| true),
+        // A stripe of 28 threads on an 8-end weave: the repeat breaks at the border.
+        WeavePattern::from_fn(28, 16, satin_8),
+    ];
+    for pattern in patterns {
+        for (lattice, cyclic) in [(CYCLIC, true), (OPEN, false)] {
+            let assignment = built(&pattern, lattice, &catalogue, Method::Dp);
+            let quality = quality(&pattern, &assignment, &catalogue);
+            assert_eq!((quality.incorrect, quality.mismatched), (0, 0));
+            for end in 0..pattern.ends() {
+                let keys = column_keys(&pattern, lattice, end);
+                let got = continuous_pairs(&catalogue, assignment.column(end), cyclic);
+                assert_eq!(got, dp_oracle(&catalogue, &keys, cyclic));
             }
         }
     }

@@ -1,5 +1,7 @@
 //! Damaged, cut and random files: an answer or an error, never a panic, never for long.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::window::Window;
 use crate::design::{Design, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps};
 use crate::exemplar::{
     Allowance, BlockMajorants, ExemplarError, ExemplarSet, Pair, VoxelGrid, common_grid, quantise,
@@ -161,6 +162,7 @@ pub struct ClothVolume {
     /// Single-scattering albedo by yarn.
     pub(super) albedo: Vec<Vec3>,
     pub(super) settings: ClothSettings,
+    pub(super) window: Arc<Window>,
 }
 
 impl ClothVolume {
@@ -176,15 +178,52 @@ impl ClothVolume {
         common_grid(catalogue, &classes.pairs, classes.pitch, settings.level)
     }
 
-    /// Makes the cloth of a design from exemplar sets, one for each pair of `classes`.
-    /// `albedo` holds the single-scattering albedo of each of the design's yarns.
+    /// Assigns a block to every crossing of a design, and says which exemplars that needs.
+    ///
+    /// # Errors
+    /// When the design's repeat is not usable or the job is cancelled.
+    pub fn assign(
+        design: &Design,
+        catalogue: &Catalogue,
+        settings: &ClothSettings,
+        job: &Job,
+    ) -> Result<(Assignment, Vec<bool>), ClothError> {
+        let SynthesisSettings { method, seed, .. } = settings.synthesis;
+        let assignment = assign(
+            &design.weave(),
+            design.lattice(),
+            catalogue,
+            method,
+            seed,
+            job,
+        )?;
+        let mut blocks = vec![false; catalogue.blocks()];
+        for end in 0..assignment.ends() {
+            for &block in assignment.column(end) {
+                blocks[usize::from(block)] = true;
+            }
+        }
+        let mut needed = vec![false; catalogue.exemplars()];
+        for (block, used) in blocks.into_iter().enumerate() {
+            needed[usize::from(catalogue.place(block as u16).exemplar)] |= used;
+        }
+        Ok((assignment, needed))
+    }
+
+    /// Makes the cloth of a design from its assignment and exemplar sets, one for each
+    /// pair of `classes`. `albedo` holds the single-scattering albedo of each of the design's yarns.
     ///
     /// # Errors
     /// When synthesis fails or the job is cancelled.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "the parts of a cloth, each made by its own step"
+    )]
     pub fn new(
         design: &Design,
         catalogue: Arc<Catalogue>,
         classes: YarnClasses,
+        assignment: Assignment,
         sets: Vec<Arc<ExemplarSet>>,
         albedo: Vec<Vec3>,
         settings: ClothSettings,
@@ -196,10 +235,9 @@ impl ClothVolume {
             seed,
             patch,
         } = settings.synthesis;
-        let weave = design.weave();
-        let assignment = assign(&weave, design.lattice(), &catalogue, method, seed, job)?;
         let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
-        let edge_fix = EdgeFix::new(&heights, &catalogue, rank, job)?;
+        let predicted: Vec<_> = sets.iter().map(|set| set.predicted.clone()).collect();
+        let edge_fix = EdgeFix::with_basis_of(&predicted, &heights, &catalogue, rank, job)?;
         job.check()?;
         let bits = neighbour_bits(&catalogue, design.lattice(), method);
         let allowance = Allowance {
@@ -232,6 +270,7 @@ impl ClothVolume {
                 .collect(),
             albedo,
             settings,
+            window: Arc::default(),
         })
     }
 
@@ -246,6 +285,7 @@ impl ClothVolume {
         job: &Job,
     ) -> Result<(), ClothError> {
         self.assignment.edit(weave, &self.catalogue, cells, job)?;
+        self.window = Arc::default();
         Ok(())
     }
 

@@ -23,7 +23,23 @@ pub(super) struct Crossing {
 
 impl ClothVolume {
     /// The crossing at (end, pick); `None` where there is no cloth.
+    #[inline]
     pub(super) fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
+        if let Some((along_x, along_y, around)) = self.window.crossing(end, pick) {
+            let around = around?;
+            return Some(Crossing {
+                end,
+                pick,
+                block: around.centre,
+                corner: [along_x.start, along_y.start],
+                per_mm: [along_x.per_mm, along_y.per_mm],
+                around: Cell::new(Some(around)),
+            });
+        }
+        self.crossing_anywhere(end, pick)
+    }
+
+    fn crossing_anywhere(&self, end: i64, pick: i64) -> Option<Crossing> {
         let block = self.placement().block(end, pick)?;
         let [bx, by, _] = self.grid.block;
         Some(Crossing {
@@ -42,13 +58,12 @@ impl ClothVolume {
         })
     }
 
+    #[inline]
     fn around(&self, crossing: &Crossing) -> Option<Neighbourhood> {
         if crossing.around.get().is_none() {
-            let set_at = |end, pick| self.set_at(end, pick);
-            let found = self
-                .placement()
-                .neighbourhood(crossing.end, crossing.pick, set_at);
-            crossing.around.set(found);
+            crossing
+                .around
+                .set(self.seams_around(crossing.end, crossing.pick));
         }
         crossing.around.get()
     }
@@ -73,21 +88,28 @@ impl ClothVolume {
     #[inline]
     fn voxel_in(&self, crossing: &Crossing, x: usize, y: usize, z: f32) -> Voxel {
         let [bx, by, depth] = self.grid.block;
-        let mut height = z;
         let weight = front_weight(z / depth as f32);
-        let fixed = !self.edge_fix.is_off();
-        if fixed {
+        // Blocks that only continue each other are not shifted.
+        let mut seams = None;
+        let mut height = z;
+        if !self.edge_fix.is_off() {
             let Some(around) = self.around(crossing) else {
                 return Voxel::EMPTY;
             };
-            height -= self.blended_shift(&around, weight, x, y);
+            if around.sides != [None; 4] {
+                let shift = self.blended_shift(&around, weight, x, y);
+                height -= shift;
+                seams = Some((around, shift));
+            }
         }
         if !(height >= 0.0 && height < depth as f32) {
             return Voxel::EMPTY;
         }
         let place = self.catalogue.place(crossing.block.block);
-        let volume =
-            &self.sets[usize::from(crossing.block.set)].volumes[usize::from(place.exemplar)];
+        let set = &self.sets[usize::from(crossing.block.set)];
+        let Some(volume) = &set.volumes[usize::from(place.exemplar)] else {
+            return Voxel::EMPTY;
+        };
         let voxel = volume.get(
             usize::from(place.x) * bx + x,
             usize::from(place.y) * by + y,
@@ -103,14 +125,22 @@ impl ClothVolume {
         let weave = &self.catalogue.weaves()[usize::from(place.exemplar)];
         let yarn = if weft {
             let step = nearest_step(voxel.yarn(), place.y, weave.picks());
-            self.maps.weft(crossing.end, crossing.pick + step)
+            let pick = crossing.pick + step;
+            self.window
+                .weft(pick)
+                .unwrap_or_else(|| self.maps.weft(crossing.end, pick))
         } else {
             let step = nearest_step(voxel.yarn(), place.x, weave.ends());
-            self.maps.warp(crossing.end + step, crossing.pick)
+            let end = crossing.end + step;
+            self.window
+                .warp(end)
+                .unwrap_or_else(|| self.maps.warp(end, crossing.pick))
         };
         let mut direction = voxel.direction();
-        if fixed && self.settings.shear {
-            direction = self.sheared(crossing, weight, x, y, direction);
+        if let Some((around, shift)) = &seams
+            && self.settings.shear
+        {
+            direction = self.sheared(around, weight, *shift, [x, y], direction);
         }
         let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
         Voxel {
@@ -134,27 +164,32 @@ impl ClothVolume {
         }
     }
 
-    /// A direction sheared by the slope of the shift.
+    /// A direction sheared by the slope of the shift, taken towards the next stack (at the
+    /// far border: from the one before).
     fn sheared(
         &self,
-        crossing: &Crossing,
+        around: &Neighbourhood,
         front: f32,
-        x: usize,
-        y: usize,
+        here: f32,
+        [x, y]: [usize; 2],
         direction: Vec3,
     ) -> Vec3 {
-        let Some(around) = crossing.around.get() else {
-            return direction;
-        };
         let [bx, by, _] = self.grid.block;
-        let shift = |x, y| self.blended_shift(&around, front, x, y);
-        let (left, right) = (x.saturating_sub(1), (x + 1).min(bx - 1));
-        let (below, above) = (y.saturating_sub(1), (y + 1).min(by - 1));
+        let slope_x = if x + 1 < bx {
+            self.blended_shift(around, front, x + 1, y) - here
+        } else {
+            here - self.blended_shift(around, front, x - 1, y)
+        };
+        let slope_y = if y + 1 < by {
+            self.blended_shift(around, front, x, y + 1) - here
+        } else {
+            here - self.blended_shift(around, front, x, y - 1)
+        };
         let mm = self.grid.voxel_mm;
-        let slope_x = (shift(right, y) - shift(left, y)) / (right - left) as f32 * mm.z / mm.x;
-        let slope_y = (shift(x, above) - shift(x, below)) / (above - below) as f32 * mm.z / mm.y;
-        let sheared = direction + Vec3::Z * (slope_x * direction.x + slope_y * direction.y);
-        sheared.try_normalize().unwrap_or(direction)
+        let rise = slope_x * direction.x * mm.z / mm.x + slope_y * direction.y * mm.z / mm.y;
+        (direction + Vec3::Z * rise)
+            .try_normalize()
+            .unwrap_or(direction)
     }
 
     /// The voxel at a point of the cloth (mm), without a filter.

@@ -12,6 +12,7 @@ mod build;
 pub mod colour;
 mod lookup;
 mod walk;
+mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
 pub use walk::ClothWalk;

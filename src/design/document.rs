@@ -47,8 +47,8 @@ pub enum DesignError {
 pub struct ForeignSection {
     /// Its name, without brackets.
     pub name: String,
-    /// Its lines, comments and blank lines included.
-    pub lines: Vec<String>,
+    /// Its lines, comments and blank lines included, separated by `\n`.
+    pub text: String,
 }
 
 /// Spacing and thickness that a file stated and the design set aside because they are its
@@ -114,8 +114,8 @@ pub struct Origin {
 pub struct Design {
     /// What the designer calls it.
     pub name: String,
-    /// Notes, line by line.
-    pub notes: Vec<String>,
+    /// Notes, lines separated by `\n`.
+    pub notes: String,
     /// What is remembered of the file it came from.
     pub origin: Origin,
     structure: Structure,
@@ -146,7 +146,7 @@ impl Design {
         }
         Ok(Self {
             name: name.into(),
-            notes: Vec::new(),
+            notes: String::new(),
             origin: Origin::default(),
             structure,
             yarns,
@@ -237,6 +237,29 @@ impl Design {
     /// Which yarn lies where.
     pub fn maps(&self) -> &YarnMaps {
         &self.maps
+    }
+
+    /// The warp yarn at a crossing of the endless cloth. Orders run on with a period of
+    /// their own; yarns given by crossing repeat with the design's lattice.
+    pub fn warp_yarn(&self, end: i64, pick: i64) -> YarnId {
+        let (end, pick) = self.place_of(&self.maps.warp, end, pick);
+        self.maps.warp(end, pick)
+    }
+
+    /// The weft yarn at a crossing of the endless cloth, as [`Design::warp_yarn`].
+    pub fn weft_yarn(&self, end: i64, pick: i64) -> YarnId {
+        let (end, pick) = self.place_of(&self.maps.weft, end, pick);
+        self.maps.weft(end, pick)
+    }
+
+    fn place_of(&self, map: &YarnMap, end: i64, pick: i64) -> (i64, i64) {
+        let straight = self.lattice == Lattice::default();
+        if straight || map.order().is_some() {
+            return (end, pick);
+        }
+        let (ends, picks) = self.structure.size();
+        let place = self.lattice.wrap(end, pick, ends, picks);
+        place.map_or((end, pick), |(end, pick)| (end.into(), pick.into()))
     }
 
     /// Threads per length.
@@ -377,8 +400,9 @@ pub fn usual_sett(yarns: &[Yarn], maps: &YarnMaps) -> Sett {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
-    use super::super::{Family, Filled};
+    use super::super::{Family, Filled, Grid, Repeat};
     use super::*;
 
     fn cloth(maps: YarnMaps) -> Result<Design, DesignError> {
@@ -398,6 +422,25 @@ mod tests {
         assert_eq!(design.cloth_repeat(), (56, 8));
         assert_eq!(design.maps().warp(28 + 19, 3), YarnId(1));
         assert_eq!(design.maps().warp(28 + 20, 3), YarnId(0));
+    }
+
+    #[test]
+    fn yarns_by_crossing_follow_a_dropped_repeat_and_orders_do_not() {
+        let grid = Grid::from_fn(8, 8, |_, pick| YarnId(u16::from(pick == 0))).unwrap();
+        let maps = YarnMaps {
+            warp: YarnMap::Crossings(grid),
+            weft: YarnMap::Order(vec![YarnId(0), YarnId(1), YarnId(1)]),
+        };
+        let dropped = Lattice {
+            across: Repeat::Dropped(3),
+            along: Repeat::Straight,
+        };
+        let design = cloth(maps).unwrap().with_lattice(dropped).unwrap();
+        assert_eq!(design.warp_yarn(0, 0), YarnId(1));
+        assert_eq!(design.warp_yarn(8, 0), YarnId(0));
+        assert_eq!(design.warp_yarn(8, 3), YarnId(1));
+        assert_eq!(design.weft_yarn(8, 3), YarnId(0));
+        assert!(!design.weavable());
     }
 
     #[test]

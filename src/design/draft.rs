@@ -15,12 +15,15 @@ use super::pattern::{SizeError, WeavePattern, check_size};
 pub struct Ties {
     /// `members[starts[i]..starts[i + 1]]` is set i.
     starts: Vec<u32>,
-    members: Vec<u32>,
+    members: Vec<u16>,
 }
+
+/// The most shafts or treadles a draft can have.
+pub const MAX_SHAFTS: u32 = 65_535;
 
 impl Ties {
     /// The sets in order, each sorted and freed of repetitions.
-    pub fn from_rows<Row: AsRef<[u32]>>(rows: impl IntoIterator<Item = Row>) -> Self {
+    pub fn from_rows<Row: AsRef<[u16]>>(rows: impl IntoIterator<Item = Row>) -> Self {
         let mut ties = Self::default();
         for row in rows {
             ties.push(row.as_ref());
@@ -28,8 +31,16 @@ impl Ties {
         ties
     }
 
+    /// No sets yet, but room for `sets` with `members` in all.
+    pub fn with_room(sets: usize, members: usize) -> Self {
+        Self {
+            starts: Vec::with_capacity(sets + 1),
+            members: Vec::with_capacity(members),
+        }
+    }
+
     /// One set more at the end.
-    pub fn push(&mut self, row: &[u32]) {
+    pub fn push(&mut self, row: &[u16]) {
         if self.starts.is_empty() {
             self.starts.push(0);
         }
@@ -58,7 +69,7 @@ impl Ties {
     }
 
     /// Set `index`, sorted; empty beyond the last.
-    pub fn row(&self, index: usize) -> &[u32] {
+    pub fn row(&self, index: usize) -> &[u16] {
         match (self.starts.get(index), self.starts.get(index + 1)) {
             (Some(&from), Some(&to)) => &self.members[from as usize..to as usize],
             _ => &[],
@@ -66,13 +77,16 @@ impl Ties {
     }
 
     /// All sets in order.
-    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+    pub fn iter(&self) -> impl Iterator<Item = &[u16]> {
         (0..self.len()).map(|index| self.row(index))
     }
 
     /// The largest number in any set, plus one.
     pub fn bound(&self) -> u32 {
-        self.members.iter().max().map_or(0, |&most| most + 1)
+        self.members
+            .iter()
+            .max()
+            .map_or(0, |&most| u32::from(most) + 1)
     }
 
     /// Members of all sets together.
@@ -111,6 +125,11 @@ pub enum DraftError {
     /// No ends, no picks, or too many crossings.
     #[error(transparent)]
     Size(#[from] SizeError),
+    /// More shafts or treadles than can be numbered.
+    #[error(
+        "{0} shafts or treadles are too many (the most is {MAX_SHAFTS}): draw the weave itself"
+    )]
+    TooMany(u32),
     /// A shaft that the loom does not have.
     #[error("the {place} names shaft {shaft}, but the draft has {shafts} shafts: add shafts")]
     Shaft {
@@ -162,6 +181,9 @@ impl Draft {
             lifting,
         };
         check_size(draft.threading.len() as u64, draft.lifts().len() as u64)?;
+        if shafts.max(treadles) > MAX_SHAFTS {
+            return Err(DraftError::TooMany(shafts.max(treadles)));
+        }
         let within = |place, bound: u32| {
             if bound > shafts {
                 let shaft = bound;
@@ -240,7 +262,7 @@ impl Draft {
                 for treadles in treadling.iter() {
                     shafts.clear();
                     for &treadle in treadles {
-                        shafts.extend_from_slice(tieup.row(treadle as usize));
+                        shafts.extend_from_slice(tieup.row(usize::from(treadle)));
                     }
                     plan.push(&shafts);
                 }
@@ -258,7 +280,11 @@ impl Draft {
         let mut pattern = WeavePattern::new(self.ends(), self.picks());
         let words = pattern.words_per_pick() as usize;
         let shafts = ShaftEnds::new(&self.threading, self.shafts as usize, words);
-        let mut known: BTreeMap<&[u32], u32> = BTreeMap::new();
+        let treadles = match &self.lifting {
+            Lifting::LiftPlan(_) => Vec::new(),
+            Lifting::Treadled { tieup, .. } => shafts.treadle_rows(tieup, words),
+        };
+        let mut known: BTreeMap<&[u16], u32> = BTreeMap::new();
         let mut row = vec![0u64; words];
         for (pick, named) in self.lifts().iter().enumerate() {
             let pick = pick as u32;
@@ -274,7 +300,11 @@ impl Draft {
                 Lifting::LiftPlan(_) => shafts.raise(named, &mut row),
                 Lifting::Treadled { tieup, .. } => {
                     for &treadle in named {
-                        shafts.raise(tieup.row(treadle as usize), &mut row);
+                        let treadle = usize::from(treadle);
+                        match treadles.get(treadle) {
+                            Some(known) if !known.is_empty() => join(known, &mut row),
+                            _ => shafts.raise(tieup.row(treadle), &mut row),
+                        }
                     }
                 }
             }
@@ -294,14 +324,17 @@ impl Draft {
     /// shafts to lift.
     ///
     /// # Errors
-    /// [`DraftError`] only if the pattern is too large.
+    /// [`DraftError::TooMany`] if it has more different columns than there can be shafts.
     pub fn from_pattern(pattern: &WeavePattern) -> Result<Self, DraftError> {
         let columns = pattern.transposed();
-        let mut shaft_of: BTreeMap<Vec<u64>, u32> = BTreeMap::new();
+        let mut shaft_of: BTreeMap<Vec<u64>, u16> = BTreeMap::new();
         let mut first_end = Vec::new();
         let mut threading = Ties::default();
         for end in 0..pattern.ends() {
-            let next = shaft_of.len() as u32;
+            if shaft_of.len() >= MAX_SHAFTS as usize {
+                return Err(DraftError::TooMany(pattern.ends()));
+            }
+            let next = shaft_of.len() as u16;
             let column: Vec<u64> = columns.pick_words(end).collect();
             let shaft = *shaft_of.entry(column).or_insert_with(|| {
                 first_end.push(end);
@@ -315,7 +348,7 @@ impl Draft {
             lifted.clear();
             for (shaft, &end) in first_end.iter().enumerate() {
                 if pattern.get(end, pick) {
-                    lifted.push(shaft as u32);
+                    lifted.push(shaft as u16);
                 }
             }
             plan.push(&lifted);
@@ -334,8 +367,9 @@ impl Draft {
 /// The ends on each shaft, as a whole row of bits where there are many and as a list
 /// where there are few.
 struct ShaftEnds {
-    /// Ends by shaft, one allocation.
-    lists: Ties,
+    /// `ends[starts[i]..starts[i + 1]]` are on shaft i.
+    starts: Vec<u32>,
+    ends: Vec<u32>,
     /// Row of bits of each dense shaft; empty for sparse ones.
     rows: Vec<Vec<u64>>,
 }
@@ -345,23 +379,28 @@ impl ShaftEnds {
         // Counting sort: how many ends a shaft has, where its list starts, then the ends.
         let mut starts = vec![0u32; shafts + 1];
         for &shaft in &threading.members {
-            starts[shaft as usize + 1] += 1;
+            starts[usize::from(shaft) + 1] += 1;
         }
         for shaft in 0..shafts {
             starts[shaft + 1] += starts[shaft];
         }
         let mut next = starts.clone();
-        let mut members = vec![0u32; threading.members.len()];
+        let mut ends = vec![0u32; threading.members.len()];
         for (end, on) in threading.iter().enumerate() {
             for &shaft in on {
-                members[next[shaft as usize] as usize] = end as u32;
-                next[shaft as usize] += 1;
+                let place = &mut next[usize::from(shaft)];
+                ends[*place as usize] = end as u32;
+                *place += 1;
             }
         }
-        let lists = Ties { starts, members };
-        let rows = (0..shafts)
+        let mut found = Self {
+            starts,
+            ends,
+            rows: Vec::new(),
+        };
+        found.rows = (0..shafts)
             .map(|shaft| {
-                let list = lists.row(shaft);
+                let list = found.list(shaft);
                 if list.len() <= 2 * words {
                     return Vec::new();
                 }
@@ -370,20 +409,46 @@ impl ShaftEnds {
                 row
             })
             .collect();
-        Self { lists, rows }
+        found
     }
 
-    fn raise(&self, named: &[u32], row: &mut [u64]) {
+    fn list(&self, shaft: usize) -> &[u32] {
+        match (self.starts.get(shaft), self.starts.get(shaft + 1)) {
+            (Some(&from), Some(&to)) => &self.ends[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+
+    fn raise(&self, named: &[u16], row: &mut [u64]) {
         for &shaft in named {
-            match self.rows.get(shaft as usize) {
-                Some(dense) if !dense.is_empty() => {
-                    for (word, bits) in row.iter_mut().zip(dense) {
-                        *word |= bits;
-                    }
-                }
-                _ => set_bits(self.lists.row(shaft as usize), row),
+            let shaft = usize::from(shaft);
+            match self.rows.get(shaft) {
+                Some(dense) if !dense.is_empty() => join(dense, row),
+                _ => set_bits(self.list(shaft), row),
             }
         }
+    }
+
+    /// The ends each treadle names, for treadles tied to more shafts than a row has words;
+    /// empty for others. Together they hold no more words than the tie-up has ties.
+    fn treadle_rows(&self, tieup: &Ties, words: usize) -> Vec<Vec<u64>> {
+        tieup
+            .iter()
+            .map(|tied| {
+                if tied.len() <= words {
+                    return Vec::new();
+                }
+                let mut row = vec![0u64; words];
+                self.raise(tied, &mut row);
+                row
+            })
+            .collect()
+    }
+}
+
+fn join(bits: &[u64], row: &mut [u64]) {
+    for (word, bits) in row.iter_mut().zip(bits) {
+        *word |= bits;
     }
 }
 
@@ -394,6 +459,7 @@ fn set_bits(ends: &[u32], row: &mut [u64]) {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

@@ -192,6 +192,7 @@ pub fn longest_float(pattern: &WeavePattern) -> FloatLengths {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
     use proptest::prelude::*;

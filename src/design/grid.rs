@@ -33,7 +33,7 @@ impl<T: Copy + PartialEq> Grid<T> {
         })
     }
 
-    /// The grid whose crossing (end, pick) holds `value(end, pick)`.
+    /// The grid whose crossing (end, pick) holds `value(end, pick)`, asked in any order.
     ///
     /// # Errors
     /// [`SizeError`], as for [`Grid::filled`].
@@ -43,10 +43,21 @@ impl<T: Copy + PartialEq> Grid<T> {
         mut value: impl FnMut(u32, u32) -> T,
     ) -> Result<Self, SizeError> {
         check_size(u64::from(ends), u64::from(picks))?;
-        let mut grid = Self::filled(ends, picks, value(0, 0))?;
-        for pick in 0..picks {
-            for end in 0..ends {
-                grid.set(end, pick, value(end, pick));
+        let usual = value(0, 0);
+        let mut grid = Self::filled(ends, picks, usual)?;
+        let columns = ends.div_ceil(TILE);
+        let mut cells = Vec::with_capacity((TILE * TILE) as usize);
+        for (index, tile) in grid.tiles.iter_mut().enumerate() {
+            let (left, bottom) = (index as u32 % columns * TILE, index as u32 / columns * TILE);
+            cells.clear();
+            for pick in bottom..bottom + TILE {
+                for end in left..left + TILE {
+                    let inside = end < ends && pick < picks;
+                    cells.push(if inside { value(end, pick) } else { usual });
+                }
+            }
+            if cells.iter().any(|&cell| cell != usual) {
+                *tile = cells.as_slice().into();
             }
         }
         Ok(grid)

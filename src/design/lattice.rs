@@ -64,6 +64,7 @@ impl Lattice {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
     use proptest::prelude::*;

@@ -30,7 +30,7 @@ mod yarn;
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };
-pub use draft::{Draft, DraftError, Lifting, Shed, Ties};
+pub use draft::{Draft, DraftError, Lifting, MAX_SHAFTS, Shed, Ties};
 pub use floats::{FloatKind, FloatLengths, FloatReport, SeamFloat, floats, longest_float};
 pub use grid::Grid;
 pub use lattice::{Lattice, LatticeError, Repeat};

@@ -367,6 +367,7 @@ impl fmt::Debug for WeavePattern {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

@@ -153,13 +153,28 @@ impl Regions {
 
     /// The drawdown.
     pub fn weave(&self) -> WeavePattern {
-        let mut pattern = WeavePattern::from_fn(self.map.ends(), self.map.picks(), |end, pick| {
-            let region = &self.palette[usize::from(self.map.get(end, pick))];
-            region.fill.pattern.get_wrapped(
-                i64::from(end) - i64::from(region.origin.0),
-                i64::from(pick) - i64::from(region.origin.1),
-            )
-        });
+        let (ends, picks) = (self.map.ends(), self.map.picks());
+        let mut pattern = WeavePattern::new(ends, picks);
+        for pick in 0..picks {
+            let mut cursor: Option<(u16, Cursor<'_>)> = None;
+            for word in 0..pattern.words_per_pick() {
+                let mut bits = 0;
+                let first = word * 64;
+                for end in first..(first + 64).min(ends) {
+                    let number = self.map.get(end, pick);
+                    let along = match &mut cursor {
+                        Some((known, along)) if *known == number => along,
+                        other => {
+                            let region = &self.palette[usize::from(number)];
+                            let along = Cursor::new(region, end, pick);
+                            &mut other.insert((number, along)).1
+                        }
+                    };
+                    bits |= u64::from(along.step()) << (end - first);
+                }
+                pattern.set_pick_word(word, pick, bits);
+            }
+        }
         if let Some(corrections) = &self.corrections {
             for pick in 0..pattern.picks() {
                 for word in 0..pattern.words_per_pick() {
@@ -171,6 +186,36 @@ impl Regions {
             }
         }
         pattern
+    }
+}
+
+/// Walks along a pick of a region's weave, from left to right, without dividing.
+struct Cursor<'r> {
+    pattern: &'r WeavePattern,
+    end: u32,
+    pick: u32,
+}
+
+impl<'r> Cursor<'r> {
+    fn new(region: &'r Region, end: u32, pick: u32) -> Self {
+        let pattern = &region.fill.pattern;
+        let wrap = |place: u32, origin: i32, period: u32| {
+            (i64::from(place) - i64::from(origin)).rem_euclid(i64::from(period)) as u32
+        };
+        Self {
+            pattern,
+            end: wrap(end, region.origin.0, pattern.ends()),
+            pick: wrap(pick, region.origin.1, pattern.picks()),
+        }
+    }
+
+    fn step(&mut self) -> bool {
+        let up = self.pattern.get(self.end, self.pick);
+        self.end += 1;
+        if self.end == self.pattern.ends() {
+            self.end = 0;
+        }
+        up
     }
 }
 
@@ -268,6 +313,7 @@ impl Structure {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

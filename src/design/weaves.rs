@@ -67,7 +67,13 @@ struct Words {
 /// [`NotationError`] with what is wrong and what would be right.
 pub fn weave(notation: &str) -> Result<WeavePattern, NotationError> {
     build(notation).map_err(|reason| NotationError {
-        notation: notation.trim().chars().take(60).collect(),
+        notation: notation
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+            .chars()
+            .take(60)
+            .collect(),
         reason,
     })
 }
@@ -314,7 +320,7 @@ fn tie_distance(ends: u32, step: u32) -> u32 {
 /// that face and back change places and no long float arises.
 fn herringbone(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
     let repeat: u32 = ratio.iter().sum();
-    if width < 2 || width > MAX_REPEAT / 2 {
+    if !(2..=MAX_REPEAT / 2).contains(&width) {
         return Err(format!(
             "stripes of {width} ends: give 2 to {}",
             MAX_REPEAT / 2
@@ -332,7 +338,7 @@ fn herringbone(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePatte
 /// Twill that turns on every `width`-th end: the turning ends stand alone.
 fn pointed(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
     let repeat: u32 = ratio.iter().sum();
-    if width < 2 || width > MAX_REPEAT / 2 {
+    if !(2..=MAX_REPEAT / 2).contains(&width) {
         return Err(format!(
             "points every {width} ends: give 2 to {}",
             MAX_REPEAT / 2
@@ -371,6 +377,7 @@ fn wavy(ratio: &[u32], size: u32, leans_left: bool) -> Result<WeavePattern, Stri
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

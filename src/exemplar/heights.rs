@@ -6,37 +6,85 @@
 use rayon::prelude::*;
 
 use super::bricks::BrickVolume;
-use crate::synthesis::{Catalogue, EdgeHeights, Face, Side};
+use super::voxelise::VoxelGrid;
+use crate::synthesis::{Catalogue, EdgeHeights, Face, Place, Side};
+use crate::yarn::{Direction, WeaveGeometry};
 
 /// Fill (of 255) from which a voxel counts as part of a yarn's surface.
 const SURFACE: u8 = 60;
 
-/// Measures all blocks of a catalogue; `volumes` holds one grid a weave, of `block` voxels
-/// a crossing.
-pub(super) fn edge_heights(
+/// Puts into `heights` what one exemplar's voxels, of `block` voxels a crossing, show.
+pub(super) fn measure(
+    heights: &mut EdgeHeights,
     catalogue: &Catalogue,
-    volumes: &[BrickVolume],
+    exemplar: usize,
+    volume: &BrickVolume,
     block: [usize; 3],
-) -> EdgeHeights {
-    let mut heights = EdgeHeights::flat(catalogue.blocks(), block[0], block[1]);
+) {
+    fill(heights, catalogue, exemplar, &|place, side, face| {
+        profile(volume, [place.x.into(), place.y.into()], block, side, face)
+    });
+}
+
+/// Puts into `heights` what the layout of one exemplar's yarns predicts.
+pub(super) fn predict(
+    heights: &mut EdgeHeights,
+    catalogue: &Catalogue,
+    exemplar: usize,
+    weave: &WeaveGeometry,
+    grid: &VoxelGrid,
+) {
+    fill(heights, catalogue, exemplar, &|place, side, face| {
+        let crossing = [usize::from(place.x), usize::from(place.y)];
+        let (axis, far) = axis_of(side);
+        let (direction, index) = match axis {
+            0 => (Direction::Weft, crossing[1]),
+            _ => (Direction::Warp, crossing[0]),
+        };
+        let mm = [grid.voxel_mm.x, grid.voxel_mm.y];
+        let border = ((crossing[axis] + usize::from(far)) * grid.block[axis]) as f32 * mm[axis];
+        let length = grid.block[1 - axis];
+        let known: Vec<Option<f32>> = (0..length)
+            .map(|position| {
+                let across = ((crossing[1 - axis] * length + position) as f32 + 0.5) * mm[1 - axis];
+                let z = weave.surface(direction, index, border, across, face == Face::Front)?;
+                Some((z - grid.floor_mm()) / grid.voxel_mm.z)
+            })
+            .collect();
+        interpolate(&known).unwrap_or_else(|| vec![0.5 * grid.block[2] as f32; length])
+    });
+}
+
+/// Fills the profiles of one exemplar's blocks.
+fn fill(
+    heights: &mut EdgeHeights,
+    catalogue: &Catalogue,
+    exemplar: usize,
+    profile: &(dyn Fn(Place, Side, Face) -> Vec<f32> + Sync),
+) {
     let edges: Vec<_> = (0..catalogue.blocks() as u16)
+        .filter(|&id| usize::from(catalogue.place(id).exemplar) == exemplar)
         .flat_map(|id| Side::ALL.map(|side| (id, side)))
         .collect();
-    let measured: Vec<[Vec<f32>; 2]> = edges
+    let profiles: Vec<[Vec<f32>; 2]> = edges
         .par_iter()
-        .map(|&(id, side)| {
-            let place = catalogue.place(id);
-            let volume = &volumes[usize::from(place.exemplar)];
-            Face::ALL
-                .map(|face| profile(volume, [place.x.into(), place.y.into()], block, side, face))
-        })
+        .map(|&(id, side)| Face::ALL.map(|face| profile(catalogue.place(id), side, face)))
         .collect();
-    for (&(id, side), profiles) in edges.iter().zip(&measured) {
+    for (&(id, side), profiles) in edges.iter().zip(&profiles) {
         for (face, profile) in Face::ALL.into_iter().zip(profiles) {
             heights.profile_mut(face, id, side).copy_from_slice(profile);
         }
     }
-    heights
+}
+
+/// The axis across an edge, and whether the edge is at its far end.
+fn axis_of(side: Side) -> (usize, bool) {
+    match side {
+        Side::Left => (0, false),
+        Side::Right => (0, true),
+        Side::Below => (1, false),
+        Side::Above => (1, true),
+    }
 }
 
 /// Height profile, in voxels, of the yarn that crosses one edge of a block.
@@ -48,12 +96,7 @@ fn profile(
     face: Face,
 ) -> Vec<f32> {
     let size = volume.size();
-    let (axis, far) = match side {
-        Side::Left => (0, false),
-        Side::Right => (0, true),
-        Side::Below => (1, false),
-        Side::Above => (1, true),
-    };
+    let (axis, far) = axis_of(side);
     // Wefts cross the left and right edges, warps the others.
     let (weft, yarn) = (axis == 0, crossing[1 - axis]);
     let border = (crossing[axis] + usize::from(far)) * block[axis];

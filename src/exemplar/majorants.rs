@@ -89,7 +89,10 @@ impl BlockMajorants {
             .map(|i| {
                 let (set, id) = (i / blocks, i % blocks);
                 let place = catalogue.place(id as u16);
-                let volume = &sets[set].volumes[usize::from(place.exemplar)];
+                // What is not built is never shown.
+                let Some(volume) = &sets[set].volumes[usize::from(place.exemplar)] else {
+                    return Vec::new();
+                };
                 let corner = [
                     usize::from(place.x) * block[0],
                     usize::from(place.y) * block[1],
@@ -114,6 +117,9 @@ impl BlockMajorants {
             .enumerate()
             .for_each(|(i, fill)| {
                 let own = &columns_of[i];
+                if own.is_empty() {
+                    return;
+                }
                 for (column, fill) in fill.chunks_mut(cells[2]).enumerate() {
                     let (x, y) = ((column % columns) as i64, (column / columns) as i64);
                     raise(fill, &own[column].all);
@@ -267,7 +273,7 @@ impl Across {
             (0..places[rim])
                 .map(|place| {
                     let mut most = vec![0u8; cells];
-                    for block in columns_of {
+                    for block in columns_of.iter().filter(|block| !block.is_empty()) {
                         raise(&mut most, &block[column_of(rim, place)].rims[rim]);
                     }
                     most

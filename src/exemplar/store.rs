@@ -1,28 +1,32 @@
-//! Exemplar sets on disk: kept by content, rebuilt when damaged, bounded.
+//! Exemplars on disk: kept by content, rebuilt when damaged, bounded.
 //!
-//! A set's file is named by the hash of everything that it is made from. It ends with
-//! the hash of all bytes before it, so that a damaged or half-written file is found out
-//! and built anew. The least recently used files give way when the folder grows too large.
+//! An exemplar's file is named by the hash of everything that it is made from. It ends
+//! with the hash of all bytes before it, so that a damaged or half-written file is found
+//! out and built anew. The least recently used files give way when the folder grows too
+//! large.
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::SystemTime;
 
-use super::bricks::{BrickVolume, PackedVoxel};
-use super::set::{ExemplarError, ExemplarSet, Pair};
-use super::voxelise::VoxelGrid;
-use crate::job::Job;
-use crate::synthesis::{Catalogue, EdgeHeights};
+use rayon::prelude::*;
 
-/// Changes whenever sets built from the same recipe change.
+use super::bricks::{BrickVolume, PackedVoxel};
+use super::set::{ExemplarError, ExemplarSet, Pair, build_exemplar};
+use super::voxelise::VoxelGrid;
+use crate::job::{Cancelled, Job};
+use crate::synthesis::Catalogue;
+
+/// Changes whenever exemplars built from the same recipe change.
 const FORMAT: u32 = 1;
 const MAGIC: &[u8; 8] = b"pickglas";
 /// Bytes that the folder may hold.
 const LIMIT: u64 = 4 << 30;
 
-/// Where exemplar sets come from: the user's cache folder, or built on the spot.
+/// Where exemplars come from: the user's cache folder, or built on the spot.
 #[derive(Debug, Clone)]
 pub struct ExemplarStore {
     folder: Option<PathBuf>,
@@ -60,39 +64,68 @@ impl ExemplarStore {
         }
     }
 
-    /// The set of a pair of yarns on a grid: read if it is there and whole, else built and
-    /// kept. A cache that cannot be written is no error: the set is built again next time.
+    /// The exemplars of a pair of yarns that are `needed`: read if they are there and
+    /// whole, else built and kept. A cache that cannot be written is no error: exemplars
+    /// are built again next time.
     ///
     /// # Errors
-    /// When the set cannot be built or the job is cancelled.
+    /// When a recipe is not usable or the job is cancelled.
     pub fn get(
         &self,
         catalogue: &Catalogue,
         pair: &Pair,
         grid: VoxelGrid,
+        needed: &[bool],
         job: &Job,
     ) -> Result<Arc<ExemplarSet>, ExemplarError> {
-        let path = self
-            .folder
-            .as_ref()
-            .map(|folder| folder.join(file_name(catalogue, pair, &grid)));
+        let mut set = ExemplarSet::new(catalogue, pair, grid)?;
+        let list: Vec<usize> = (0..catalogue.exemplars())
+            .filter(|&exemplar| needed.get(exemplar).copied().unwrap_or(false))
+            .collect();
+        let done = AtomicUsize::new(0);
+        let volumes = list
+            .par_iter()
+            .map(|&exemplar| {
+                let volume = self.exemplar(catalogue, pair, &grid, exemplar, job)?;
+                let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+                job.report("exemplars", done as f32 / list.len() as f32);
+                Ok(volume)
+            })
+            .collect::<Result<Vec<_>, Cancelled>>()?;
+        for (exemplar, volume) in list.into_iter().zip(volumes) {
+            set.put(catalogue, exemplar, Arc::new(volume));
+        }
+        Ok(Arc::new(set))
+    }
+
+    fn exemplar(
+        &self,
+        catalogue: &Catalogue,
+        pair: &Pair,
+        grid: &VoxelGrid,
+        exemplar: usize,
+        job: &Job,
+    ) -> Result<BrickVolume, Cancelled> {
+        job.check()?;
+        let name = || file_name(catalogue, pair, grid, exemplar);
+        let path = self.folder.as_ref().map(|folder| folder.join(name()));
         if let Some(path) = &path
-            && let Some(set) = read(path, catalogue, pair, grid)
+            && let Some(volume) = read(path)
         {
             // Reading is using: the oldest file is the first to go.
             if let Ok(file) = File::options().append(true).open(path) {
                 let _ = file.set_modified(SystemTime::now());
             }
-            return Ok(Arc::new(set));
+            return Ok(volume);
         }
-        let set = ExemplarSet::build(catalogue, pair, grid, job)?;
+        let volume = build_exemplar(catalogue, pair, grid, exemplar, job)?;
         if let (Some(folder), Some(path)) = (&self.folder, &path) {
-            if let Err(error) = write(folder, path, &set) {
+            if let Err(error) = write(folder, path, &volume) {
                 log::warn!("exemplars are not kept in {}: {error}", folder.display());
             }
             self.make_room(path);
         }
-        Ok(Arc::new(set))
+        Ok(volume)
     }
 
     /// Removes the least recently used files beyond the limit, never `keep`.
@@ -118,20 +151,18 @@ impl ExemplarStore {
     }
 }
 
-fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid) -> String {
+fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usize) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&FORMAT.to_le_bytes());
     // Recipes are plain numbers: their debug form names every one of them exactly.
     hasher.update(format!("{pair:?} {grid:?}").as_bytes());
-    for weave in catalogue.weaves() {
-        hasher.update(format!("{}x{}:", weave.ends(), weave.picks()).as_bytes());
-        for pick in 0..weave.picks() {
-            for end in 0..weave.ends() {
-                hasher.update(&[u8::from(weave.get(end, pick))]);
-            }
+    let weave = &catalogue.weaves()[exemplar];
+    hasher.update(format!("{exemplar} {}x{}:", weave.ends(), weave.picks()).as_bytes());
+    for pick in 0..weave.picks() {
+        for end in 0..weave.ends() {
+            hasher.update(&[u8::from(weave.get(end, pick))]);
         }
     }
-    // Code changes what a recipe gives: a small part of the set stands for all of it.
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
     format!("{}.exemplars", &hasher.finalize().to_hex()[..32])
 }
@@ -154,7 +185,7 @@ impl<W: Write> Hashed<W> {
     }
 }
 
-fn write(folder: &Path, path: &Path, set: &ExemplarSet) -> std::io::Result<()> {
+fn write(folder: &Path, path: &Path, volume: &BrickVolume) -> std::io::Result<()> {
     fs::create_dir_all(folder)?;
     let temporary = tempfile::NamedTempFile::new_in(folder)?;
     let mut out = Hashed {
@@ -162,17 +193,10 @@ fn write(folder: &Path, path: &Path, set: &ExemplarSet) -> std::io::Result<()> {
         hasher: blake3::Hasher::new(),
     };
     out.put(MAGIC)?;
-    let heights = &set.heights;
-    for list in [&heights.left, &heights.right, &heights.bottom, &heights.top] {
-        out.put_list(list)?;
-    }
-    out.put(&(set.volumes.len() as u64).to_le_bytes())?;
-    for volume in &set.volumes {
-        let (size, index, voxels) = volume.parts();
-        out.put_list(&size.map(|n| n as u32))?;
-        out.put_list(index)?;
-        out.put_list(voxels)?;
-    }
+    let (size, index, voxels) = volume.parts();
+    out.put_list(&size.map(|n| n as u32))?;
+    out.put_list(index)?;
+    out.put_list(voxels)?;
     let hash = out.hasher.finalize();
     out.inner.write_all(hash.as_bytes())?;
     let temporary = out
@@ -201,8 +225,8 @@ impl Parts<'_> {
     }
 }
 
-/// The set in a file, or `None` when there is none or it is damaged.
-fn read(path: &Path, catalogue: &Catalogue, pair: &Pair, grid: VoxelGrid) -> Option<ExemplarSet> {
+/// The exemplar in a file, or `None` when there is none or it is damaged.
+fn read(path: &Path) -> Option<BrickVolume> {
     let bytes = fs::read(path).ok()?;
     let (content, hash) = bytes.split_last_chunk::<32>()?;
     if blake3::hash(content).as_bytes() != hash || !content.starts_with(MAGIC) {
@@ -210,40 +234,10 @@ fn read(path: &Path, catalogue: &Catalogue, pair: &Pair, grid: VoxelGrid) -> Opt
         return None;
     }
     let mut parts = Parts(&content[MAGIC.len()..]);
-    let mut heights = EdgeHeights::flat(catalogue.blocks(), grid.block[0], grid.block[1]);
-    for list in [
-        &mut heights.left,
-        &mut heights.right,
-        &mut heights.bottom,
-        &mut heights.top,
-    ] {
-        let stored = parts.list::<f32>()?;
-        if stored.len() != list.len() {
-            return None;
-        }
-        *list = stored;
-    }
-    let count = parts.count()?;
-    if count != catalogue.exemplars() {
-        return None;
-    }
-    let mut volumes = Vec::with_capacity(count);
-    for _ in 0..count {
-        let size: [u32; 3] = parts.list::<u32>()?.try_into().ok()?;
-        let index = parts.list::<u32>()?;
-        let voxels = parts.list::<PackedVoxel>()?;
-        volumes.push(BrickVolume::from_parts(
-            size.map(|n| n as usize),
-            index,
-            voxels,
-        )?);
-    }
-    parts.0.is_empty().then_some(ExemplarSet {
-        pair: pair.clone(),
-        grid,
-        volumes,
-        heights,
-    })
+    let size: [u32; 3] = parts.list::<u32>()?.try_into().ok()?;
+    let (index, voxels) = (parts.list::<u32>()?, parts.list::<PackedVoxel>()?);
+    let volume = BrickVolume::from_parts(size.map(|n| n as usize), index, voxels)?;
+    parts.0.is_empty().then_some(volume)
 }
 
 #[cfg(test)]
@@ -274,15 +268,23 @@ mod tests {
             .path()
     }
 
+    /// The plain first exemplar alone.
+    fn get(store: &ExemplarStore, pair: &Pair) -> Arc<ExemplarSet> {
+        let (catalogue, _, grid) = small();
+        store
+            .get(&catalogue, pair, grid, &[true], &Job::new())
+            .unwrap()
+    }
+
     #[test]
-    fn a_set_comes_back_as_it_was_and_damage_is_found() {
+    fn an_exemplar_comes_back_as_it_was_and_damage_is_found() {
         let folder = tempfile::tempdir().unwrap();
         let store = ExemplarStore::at(folder.path(), LIMIT);
-        let (catalogue, pair, grid) = small();
-        let built = store.get(&catalogue, &pair, grid, &Job::new()).unwrap();
+        let (_, pair, _) = small();
+        let built = get(&store, &pair);
+        assert!(built.volumes[1].is_none());
         let path = only_file(folder.path());
-        let read_back = read(&path, &catalogue, &pair, grid).unwrap();
-        assert!(built.volumes == read_back.volumes && built.heights == read_back.heights);
+        assert!(built.volumes[0].as_deref() == read(&path).as_ref());
 
         // One bit anywhere, or a cut, and the file is not used but replaced.
         let whole = fs::read(&path).unwrap();
@@ -290,11 +292,11 @@ mod tests {
             let mut damaged = whole.clone();
             damaged[at] ^= 4;
             fs::write(&path, &damaged).unwrap();
-            assert!(read(&path, &catalogue, &pair, grid).is_none(), "byte {at}");
+            assert!(read(&path).is_none(), "byte {at}");
         }
         fs::write(&path, &whole[..whole.len() / 3]).unwrap();
-        assert!(read(&path, &catalogue, &pair, grid).is_none());
-        store.get(&catalogue, &pair, grid, &Job::new()).unwrap();
+        assert!(read(&path).is_none());
+        get(&store, &pair);
         assert_eq!(fs::read(&path).unwrap(), whole);
     }
 
@@ -302,22 +304,24 @@ mod tests {
     fn the_folder_is_bounded_and_the_newest_stays() {
         let folder = tempfile::tempdir().unwrap();
         let store = ExemplarStore::at(folder.path(), 1);
-        let (catalogue, pair, grid) = small();
-        store.get(&catalogue, &pair, grid, &Job::new()).unwrap();
+        let (_, pair, _) = small();
+        get(&store, &pair);
         let first = only_file(folder.path());
-        let thin = Pair {
-            warp: YarnRecipe::family(Family::Linen, 0.3),
-            ..pair
-        };
-        store.get(&catalogue, &thin, grid, &Job::new()).unwrap();
+        get(
+            &store,
+            &Pair {
+                warp: YarnRecipe::family(Family::Linen, 0.3),
+                ..pair
+            },
+        );
         assert!(!first.exists());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]
     fn a_folder_that_cannot_be_written_is_no_error() {
-        let (catalogue, pair, grid) = small();
-        let store = ExemplarStore::at("/proc/none", LIMIT);
-        assert!(store.get(&catalogue, &pair, grid, &Job::new()).is_ok());
+        let (_, pair, _) = small();
+        let set = get(&ExemplarStore::at("/proc/none", LIMIT), &pair);
+        assert!(set.volumes[0].is_some());
     }
 }

@@ -281,8 +281,14 @@ pub(crate) fn principal_axis(m: [f32; 6]) -> (Vec3, f32) {
         2
     };
     let mut axis = columns[start].try_normalize().unwrap_or(Vec3::Z);
+    // One fibre alone is its own axis at once; crossing ones take a few steps.
     for _ in 0..6 {
-        axis = times(axis).try_normalize().unwrap_or(axis);
+        let next = times(axis).try_normalize().unwrap_or(axis);
+        let settled = next.dot(axis) > 1.0 - 1e-6;
+        axis = next;
+        if settled {
+            break;
+        }
     }
     let trace = m[0] + m[1] + m[2];
     let outside = if trace > 0.0 {

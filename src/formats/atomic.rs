@@ -37,7 +37,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     write_with(path, |out| out.write_all(bytes))
 }
 
-/// As [`write`], with the bytes produced by `fill` into a buffered file.
+/// As [`write()`], with the bytes produced by `fill` into a buffered file.
 ///
 /// # Errors
 /// [`WriteError`]; also what `fill` returns.
@@ -86,6 +86,7 @@ fn put(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

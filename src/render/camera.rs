@@ -220,6 +220,11 @@ impl Camera {
         self.width as f32 / self.width_mm
     }
 
+    /// The point in the middle of the picture, mm.
+    pub fn target(&self) -> Vec3 {
+        self.target
+    }
+
     /// The unit direction in which the camera looks.
     pub fn forward(&self) -> Vec3 {
         self.forward

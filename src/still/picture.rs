@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothSettings, ClothVolume, YarnClasses, colour};
+use crate::cloth::{ClothError, ClothSettings, ClothVolume, YarnClasses, colour};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
@@ -101,21 +101,22 @@ pub fn prepare(
     let (settings, _, effects) = settings(request)?;
     let begun = Instant::now();
     let catalogue = Arc::new(Catalogue::standard());
+    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, job)?;
+    let assigning = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
     let classes = YarnClasses::new(design);
-    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings)
-        .map_err(crate::cloth::ClothError::from)?;
-    let mut sets = Vec::with_capacity(classes.pairs.len());
-    for pair in &classes.pairs {
-        let set = store
-            .get(&catalogue, pair, grid, job)
-            .map_err(crate::cloth::ClothError::from)?;
-        sets.push(set);
-    }
+    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).map_err(ClothError::from)?;
+    let sets = (classes.pairs.iter())
+        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(ClothError::from)?;
     let exemplars = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let albedo: Vec<Vec3> = design.yarns().iter().map(colour::albedo).collect();
-    let cloth = ClothVolume::new(design, catalogue, classes, sets, albedo, settings, job)?;
-    let synthesis = begun.elapsed().as_secs_f64();
+    let cloth = ClothVolume::new(
+        design, catalogue, classes, assignment, sets, albedo, settings, job,
+    )?;
+    let synthesis = assigning + begun.elapsed().as_secs_f64();
     Ok(PreparedCloth {
         design: Arc::clone(design),
         cloth,
@@ -204,14 +205,9 @@ pub fn render(
             error: known(progress.error.error),
         });
     };
-    let outcome = render::render(
-        &prepared.cloth,
-        &camera,
-        &lights,
-        &settings,
-        &job,
-        &mut show,
-    )?;
+    let (x, y) = in_view(&camera, request.view);
+    let cloth = prepared.cloth.clone().with_window(x, y);
+    let outcome = render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?;
     let mut seconds = prepared.seconds.clone();
     seconds.push(("render".to_owned(), outcome.seconds));
     let report = StillReport {
@@ -244,6 +240,23 @@ pub fn render(
         pixels_per_mm: camera.pixels_per_mm(),
         texts,
     })
+}
+
+/// The stretch of cloth that a camera sees most of, mm in x and y.
+fn in_view(camera: &Camera, view: View) -> (std::ops::Range<f32>, std::ops::Range<f32>) {
+    // A slanting view reaches further.
+    let reach = match view {
+        View::Face | View::Back | View::Close => 0.6,
+        View::Oblique => 1.2,
+        View::Grazing => 2.5,
+    };
+    let target = camera.target();
+    let across = reach * camera.width() as f32 / camera.pixels_per_mm();
+    let along = reach * camera.height() as f32 / camera.pixels_per_mm();
+    (
+        target.x - across..target.x + across,
+        target.y - along..target.y + along,
+    )
 }
 
 /// Prepares and renders in one go, with the user's exemplar store.

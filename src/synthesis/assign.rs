@@ -116,7 +116,13 @@ impl Assignment {
     /// there is no cloth.
     #[inline]
     pub fn at(&self, end: i64, pick: i64) -> Option<u16> {
-        let (end, pick) = self.lattice.wrap(end, pick, self.ends(), self.picks)?;
+        // Most lookups fall inside the design and need no lattice.
+        let inside = u32::try_from(end).ok().zip(u32::try_from(pick).ok());
+        let inside = inside.filter(|&(end, pick)| end < self.ends() && pick < self.picks);
+        let (end, pick) = match inside {
+            Some(crossing) => crossing,
+            None => self.lattice.wrap(end, pick, self.ends(), self.picks)?,
+        };
         Some(self.block(end, pick))
     }
 

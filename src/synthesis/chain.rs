@@ -157,8 +157,9 @@ impl Columns {
 /// A continuous pair along the warp, in the score; everything else stays below.
 const ALONG: u64 = 1 << 32;
 /// A block beside that would fit, in the score.
-const BESIDE: u64 = 16;
-/// Preferences lie below this.
+const BESIDE: u64 = 64;
+/// Preferences lie below this: a column of four rows of them does not outweigh a block
+/// beside (measured: heavier preferences cost continuity across the warp).
 const PREFERENCES: u64 = 16;
 
 /// A column of the cloth: keys of its own crossings and of those beside it, row by row.
@@ -181,10 +182,15 @@ pub(super) struct Column<'a> {
 /// Buffers of one thread, kept between columns.
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// Each entry as it lies on this column.
+    /// The candidates of each key as they lie on this column, in the order of the keys.
     laid: Vec<Laid>,
-    /// Preferences `[entry.preferences + row mod height]`.
+    /// First of each key's candidates in `laid`, and the end of the last.
+    laid_from: Vec<usize>,
+    /// Preferences `[laid.preferences + row mod height]`.
     preferences: Vec<u8>,
+    /// Distinct heights of exemplars and the row modulo each.
+    heights: Vec<u32>,
+    phases: Vec<u32>,
     scores: Vec<u64>,
     scores_below: Vec<u64>,
     /// Best entry of each row.
@@ -199,12 +205,17 @@ pub(super) struct Scratch {
     visited: Vec<bool>,
 }
 
-/// An entry in step with a column of the cloth.
+/// An entry in step with a column of the cloth: all that the recursion asks of it.
 #[derive(Clone, Copy)]
 struct Laid {
+    entry: u16,
+    /// Entry below, and the keys it is a candidate for: none when there is no entry.
+    below: u16,
+    below_accepts: u32,
+    beside: [u32; 2],
+    /// Which of `Scratch::heights` the exemplar has.
     height: u32,
     preferences: u32,
-    beside: [u32; 2],
 }
 
 /// Fills `blocks` with the best block for each row of a column.
@@ -247,43 +258,81 @@ struct Solver<'a> {
 impl Solver<'_> {
     /// The design's column of a row.
     fn end(&self, row: usize) -> u32 {
-        let ends = self.column.ends;
-        ends.get(row / self.column.picks).copied().unwrap_or(0)
-    }
-
-    /// Puts every entry in step with the column's first row and gives it its preferences.
-    fn lay(&self, catalogue: &Catalogue, seed: u64, scratch: &mut Scratch) {
-        scratch.laid.clear();
-        scratch.preferences.clear();
-        let end = self.end(0);
-        for entry in &self.columns.entries {
-            let block = self.columns.align(entry, end);
-            let place = catalogue.place(block);
-            let width = u32::from(entry.width);
-            let height = u32::from(entry.height);
-            let across = (u32::from(place.x) + width - end % width) % width;
-            scratch.laid.push(Laid {
-                height,
-                preferences: scratch.preferences.len() as u32,
-                beside: self.columns.beside[usize::from(block)],
-            });
-            for row in 0..height {
-                let along = (u32::from(place.y) + height - row) % height;
-                let phase = u64::from(across) << 32 | u64::from(along);
-                let liking = hash(seed, u64::from(entry.exemplar), phase) % PREFERENCES;
-                scratch.preferences.push(liking as u8);
-            }
+        match self.column.ends {
+            [end] => *end,
+            ends => ends.get(row / self.column.picks).copied().unwrap_or(0),
         }
     }
 
-    /// What an entry is worth at a row, apart from continuity along the warp.
+    /// A row counted round the column, at most one turn too far.
     #[inline]
-    fn worth(&self, entry: u16, row: usize, scratch: &Scratch) -> u64 {
-        let laid = &scratch.laid[usize::from(entry)];
+    fn round(&self, row: usize) -> usize {
+        let rows = self.column.keys.len();
+        if row >= rows { row - rows } else { row }
+    }
+
+    /// Puts all candidates in step with the column's first row, with their preferences.
+    fn lay(&self, catalogue: &Catalogue, seed: u64, scratch: &mut Scratch) {
+        scratch.laid.clear();
+        scratch.laid_from.clear();
+        scratch.preferences.clear();
+        scratch.heights.clear();
+        let end = self.end(0);
+        for list in &self.columns.by_key {
+            scratch.laid_from.push(scratch.laid.len());
+            for &index in list {
+                let entry = &self.columns.entries[usize::from(index)];
+                let block = self.columns.align(entry, end);
+                let lower = self.columns.entries.get(usize::from(entry.below));
+                let height = u32::from(entry.height);
+                let known = scratch.heights.iter().position(|&other| other == height);
+                let slot = known.unwrap_or(scratch.heights.len());
+                if known.is_none() {
+                    scratch.heights.push(height);
+                }
+                scratch.laid.push(Laid {
+                    entry: index,
+                    below: if lower.is_some() { entry.below } else { 0 },
+                    below_accepts: lower.map_or(0, |lower| lower.accepts),
+                    beside: self.columns.beside[usize::from(block)],
+                    height: slot as u32,
+                    preferences: scratch.preferences.len() as u32,
+                });
+                let place = catalogue.place(block);
+                let width = u32::from(entry.width);
+                let across = (u32::from(place.x) + width - end % width) % width;
+                for row in 0..height {
+                    let along = (u32::from(place.y) + height - row) % height;
+                    let phase = u64::from(across) << 32 | u64::from(along);
+                    let liking = hash(seed, u64::from(entry.exemplar), phase) % PREFERENCES;
+                    scratch.preferences.push(liking as u8);
+                }
+            }
+        }
+        scratch.laid_from.push(scratch.laid.len());
+    }
+
+    /// Fills `phases` with a row modulo each exemplar height.
+    fn enter_row(row: usize, heights: &[u32], phases: &mut Vec<u32>) {
+        phases.clear();
+        phases.extend(heights.iter().map(|&height| row as u32 % height));
+    }
+
+    /// The same for the row after the one entered last, without division.
+    #[inline]
+    fn enter_next_row(heights: &[u32], phases: &mut [u32]) {
+        for (phase, &height) in phases.iter_mut().zip(heights) {
+            *phase = if *phase + 1 == height { 0 } else { *phase + 1 };
+        }
+    }
+
+    /// What a candidate is worth at a row, apart from continuity along the warp.
+    #[inline]
+    fn worth(&self, laid: &Laid, row: usize, phases: &[u32], preferences: &[u8]) -> u64 {
         let left = laid.beside[0] >> self.column.left[row] & 1;
         let right = laid.beside[1] >> self.column.right[row] & 1;
-        let phase = row as u32 % laid.height;
-        let liking = scratch.preferences[(laid.preferences + phase) as usize];
+        let phase = phases[laid.height as usize];
+        let liking = preferences[(laid.preferences + phase) as usize];
         BESIDE * u64::from(left + right) + u64::from(liking)
     }
 
@@ -299,74 +348,100 @@ impl Solver<'_> {
     }
 
     /// The entry at row 0 of the best cycle of blocks that closes on itself.
-    fn closed_cycle(&self, scratch: &Scratch) -> Option<u16> {
+    fn closed_cycle(&self, scratch: &mut Scratch) -> Option<u16> {
         let first = *self.column.keys.first()?;
-        let sum_round = |&start: &u16| {
-            let mut sum = self.worth(start, 0, scratch);
-            let mut entry = start;
-            for (row, &key) in self.column.keys.iter().enumerate().skip(1) {
-                entry = self.columns.follow(entry, key)?;
-                sum += self.worth(entry, row, scratch);
+        let mut best = None;
+        for &start in &self.columns.by_key[usize::from(first)] {
+            if let Some(sum) = self.worth_of_cycle(start, scratch) {
+                best = best.max(Some((sum, start)));
             }
-            let closed = self.columns.entries[usize::from(entry)].above == start;
-            closed.then_some((std::cmp::Reverse(sum), start))
-        };
-        let candidates = self.columns.by_key[usize::from(first)].iter();
-        candidates
-            .filter_map(sum_round)
-            .min()
-            .map(|(_, start)| start)
+        }
+        best.map(|(_, start)| start)
+    }
+
+    /// What the cycle of blocks from an entry at row 0 is worth; `None` unless it closes.
+    fn worth_of_cycle(&self, start: u16, scratch: &mut Scratch) -> Option<u64> {
+        let mut entry = start;
+        let mut sum = 0;
+        for (row, &key) in self.column.keys.iter().enumerate() {
+            if row > 0 {
+                entry = self.columns.follow(entry, key)?;
+            }
+            Self::enter_row(row, &scratch.heights, &mut scratch.phases);
+            let key = usize::from(key);
+            let list = &scratch.laid[scratch.laid_from[key]..scratch.laid_from[key + 1]];
+            let laid = list.iter().find(|laid| laid.entry == entry)?;
+            sum += self.worth(laid, row, &scratch.phases, &scratch.preferences);
+        }
+        let closed = self.columns.entries[usize::from(entry)].above == start;
+        closed.then_some(sum)
     }
 
     /// The recursion, from `start` upwards (round the column).
     fn maximise(&self, start: usize, scratch: &mut Scratch) {
         let keys = self.column.keys;
-        scratch.scores.clear();
-        scratch.scores.resize(self.columns.entries.len(), 0);
-        scratch.scores_below.clone_from(&scratch.scores);
-        scratch.best.clear();
-        scratch.continued.clear();
-        scratch.rows.clear();
-        let mut below = None;
+        let Scratch {
+            laid,
+            laid_from,
+            preferences,
+            heights,
+            phases,
+            scores,
+            scores_below,
+            best,
+            continued,
+            rows,
+            ..
+        } = scratch;
+        scores.clear();
+        scores.resize(self.columns.entries.len(), 0);
+        scores_below.clone_from(scores);
+        best.clear();
+        continued.clear();
+        rows.clear();
+        // No key lies below the first row: nothing can be continued there.
+        let mut below_bit = 0u32;
         let mut best_below = 0;
         for row in (start..keys.len()).chain(0..start) {
-            scratch.rows.push(scratch.continued.len());
-            let (mut best, mut best_entry) = (0, NO_BLOCK);
-            for &entry in &self.columns.by_key[usize::from(keys[row])] {
-                let under = self.columns.entries[usize::from(entry)].below;
-                let continuing = match (below, self.columns.entries.get(usize::from(under))) {
-                    (Some(key), Some(lower)) if lower.accepts >> key & 1 == 1 => {
-                        scratch.scores_below[usize::from(under)] + ALONG
-                    }
-                    _ => 0,
-                };
-                let continues = continuing > best_below;
-                let score = continuing.max(best_below) + self.worth(entry, row, scratch);
-                scratch.scores[usize::from(entry)] = score;
-                scratch.continued.push(continues);
-                if best_entry == NO_BLOCK || score > best {
-                    (best, best_entry) = (score, entry);
+            if row == start || row == 0 {
+                Self::enter_row(row, heights, phases);
+            } else {
+                Self::enter_next_row(heights, phases);
+            }
+            rows.push(continued.len());
+            let key = usize::from(keys[row]);
+            let (mut highest, mut highest_entry) = (0, NO_BLOCK);
+            for candidate in &laid[laid_from[key]..laid_from[key + 1]] {
+                let fits = candidate.below_accepts & below_bit != 0;
+                let continuing = scores_below[usize::from(candidate.below)] + ALONG;
+                let continuing = if fits { continuing } else { 0 };
+                let score =
+                    continuing.max(best_below) + self.worth(candidate, row, phases, preferences);
+                scores[usize::from(candidate.entry)] = score;
+                continued.push(continuing > best_below);
+                if score > highest || highest_entry == NO_BLOCK {
+                    (highest, highest_entry) = (score, candidate.entry);
                 }
             }
-            scratch.best.push(best_entry);
-            std::mem::swap(&mut scratch.scores, &mut scratch.scores_below);
-            (below, best_below) = (Some(keys[row]), best);
+            best.push(highest_entry);
+            std::mem::swap(scores, scores_below);
+            below_bit = 1 << key;
+            best_below = highest;
         }
     }
 
     /// Follows the recursion back from its best end, run by run.
     fn write_back(&self, start: usize, scratch: &Scratch, blocks: &mut [u16]) {
-        let keys = self.column.keys;
-        let mut top = keys.len();
+        let mut top = self.column.keys.len();
         while top > 0 {
             // Down from the best entry of the topmost free row to where its run begins.
             let mut step = top - 1;
             let mut entry = scratch.best[step];
-            while self.continues(entry, step, (start + step) % keys.len(), scratch) {
+            while self.continues(entry, step, self.round(start + step), scratch) {
                 entry = self.columns.entries[usize::from(entry)].below;
                 step -= 1;
             }
-            self.write_run(entry, (start + step) % keys.len(), top - step, blocks);
+            self.write_run(entry, self.round(start + step), top - step, blocks);
             top = step;
         }
     }
@@ -385,7 +460,7 @@ impl Solver<'_> {
             let Some(here) = self.columns.entries.get(usize::from(entry)) else {
                 return;
             };
-            blocks[(row + step) % self.column.keys.len()] = self.columns.align(here, end);
+            blocks[self.round(row + step)] = self.columns.align(here, end);
             entry = here.above;
         }
     }

@@ -105,8 +105,23 @@ impl EdgeFix {
         rank: Rank,
         job: &Job,
     ) -> Result<Self, SynthesisError> {
+        Self::with_basis_of(heights, heights, catalogue, rank, job)
+    }
+
+    /// The same with a basis made for other heights, such as those that recipes predict:
+    /// it stays what it is while more exemplars are built and measured.
+    ///
+    /// # Errors
+    /// As [`EdgeFix::new`].
+    pub fn with_basis_of(
+        predicted: &[EdgeHeights],
+        heights: &[EdgeHeights],
+        catalogue: &Catalogue,
+        rank: Rank,
+        job: &Job,
+    ) -> Result<Self, SynthesisError> {
         let (bx, by) = heights.first().map_or((1, 1), |first| (first.bx, first.by));
-        for (set, heights) in heights.iter().enumerate() {
+        for (set, heights) in predicted.iter().chain(heights).enumerate() {
             heights.check(set, catalogue)?;
             if (heights.bx, heights.by) != (bx, by) {
                 let what = format!(
@@ -138,9 +153,9 @@ impl EdgeFix {
         };
         let [across, along] = meetings(catalogue, job)?;
         job.report("edge fixing", 0.1);
-        let gram = gram_matrix(heights, &across, Side::Right, by);
+        let gram = gram_matrix(predicted, &across, Side::Right, by);
         fix.vertical = Basis::vertical(gram, wanted, bx, by);
-        let gram = gram_matrix(heights, &along, Side::Above, bx);
+        let gram = gram_matrix(predicted, &along, Side::Above, bx);
         fix.horizontal = Basis::horizontal(gram, wanted, bx, by);
         job.check()?;
         job.report("edge fixing", 0.4);

@@ -82,6 +82,7 @@ impl EdgeSolver {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::EdgeSolver;
 
@@ -89,14 +90,14 @@ mod tests {
     fn dense(across: usize, along: usize, edge: &[f64]) -> Vec<f64> {
         let n = across * along;
         let mut rows = vec![vec![0.0; n + 1]; n];
-        for y in 0..along {
+        for (y, &given) in edge.iter().enumerate() {
             for x in 0..across {
                 let at = y * across + x;
                 let on = [x == 0, x + 1 == across, y == 0, y + 1 == along];
                 let edges = on.iter().filter(|&&b| b).count();
                 if edges > 0 {
                     rows[at][at] = 1.0;
-                    rows[at][n] = if x == 0 { edge[y] / edges as f64 } else { 0.0 };
+                    rows[at][n] = if x == 0 { given / edges as f64 } else { 0.0 };
                 } else {
                     rows[at][at] = 4.0;
                     for other in [at - 1, at + 1, at - across, at + across] {

@@ -1,6 +1,7 @@
 //! From a crossing of the endless cloth to its block, its neighbours and its seams.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hash, Hasher};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -32,6 +33,13 @@ pub struct Neighbourhood {
     pub sides: [Option<BlockRef>; 4],
 }
 
+/// A block before and after randomisation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shown {
+    pub assigned: u16,
+    pub shown: u16,
+}
+
 /// An assignment with its randomisation: what is finally shown where.
 #[derive(Clone, Copy)]
 pub struct Placement<'a> {
@@ -49,6 +57,18 @@ impl Placement<'_> {
     pub fn block(&self, end: i64, pick: i64) -> Option<u16> {
         let block = self.assignment.at(end, pick)?;
         Some(self.randomisation.apply(self.catalogue, block, end, pick))
+    }
+
+    /// The blocks of one end of the cloth at picks 0 to `picks` of the design, that is one
+    /// more than it has: as assigned and as shown. `None` where there is no cloth.
+    pub(super) fn column(&self, end: i64, column: &mut Vec<Option<Shown>>) {
+        column.clear();
+        let mut patch = self.randomisation.patches_of(end);
+        column.extend((0..=i64::from(self.assignment.picks())).map(|pick| {
+            let assigned = self.assignment.at(end, pick)?;
+            let shown = patch.apply(self.catalogue, assigned, pick);
+            Some(Shown { assigned, shown })
+        }));
     }
 
     /// The block shown at a crossing and its four neighbours; `set_at(end, pick)` is the
@@ -127,32 +147,26 @@ impl Placement<'_> {
         set_at: &(impl Fn(i64, i64) -> u16 + Sync),
         job: &Job,
     ) -> Result<Vec<(BlockRef, BlockRef, Side, u64)>, SynthesisError> {
-        let at = |end: i64, pick: i64| {
-            let block = self.block(end, pick)?;
-            let set = set_at(end, pick);
-            Some(BlockRef { set, block })
-        };
-        let picks = i64::from(self.assignment.picks());
-        let counts = (0..i64::from(self.assignment.ends()))
-            .into_par_iter()
-            .try_fold(SeamCounts::new, |mut counts, end| {
-                job.check()?;
-                let mut above = at(end, 0);
-                for pick in 0..picks {
-                    let here = above;
-                    above = at(end, pick + 1);
-                    for (side, other) in [(Side::Right, at(end + 1, pick)), (Side::Above, above)] {
-                        let (Some(first), Some(second)) = (here, other) else {
-                            continue;
-                        };
-                        if !edge_fix.continues(first, side, second) {
-                            *counts.entry((side.index(), first, second)).or_insert(0) += 1;
-                        }
+        let ends: Vec<i64> = (0..i64::from(self.assignment.ends())).collect();
+        let share = ends.len().div_ceil(4 * rayon::current_num_threads());
+        let counts = ends
+            .par_chunks(share.max(1))
+            .map(|ends| {
+                let mut counts = SeamCounts::default();
+                let (mut here, mut right) = (Vec::new(), Vec::new());
+                for &end in ends {
+                    job.check()?;
+                    if right.is_empty() {
+                        self.column(end, &mut right);
                     }
+                    std::mem::swap(&mut here, &mut right);
+                    self.column(end + 1, &mut right);
+                    let set_at = |side: i64, pick: usize| set_at(end + side, pick as i64);
+                    count_column(edge_fix, &here, &right, set_at, &mut counts);
                 }
                 Ok::<_, SynthesisError>(counts)
             })
-            .try_reduce(SeamCounts::new, |mut counts, others| {
+            .try_reduce(SeamCounts::default, |mut counts, others| {
                 // Whole numbers add up to the same in any order.
                 others.into_iter().for_each(|(seam, count)| {
                     *counts.entry(seam).or_insert(0) += count;
@@ -160,15 +174,88 @@ impl Placement<'_> {
                 Ok(counts)
             })?;
         let mut list: Vec<_> = counts.into_iter().collect();
-        list.sort_unstable();
+        list.sort_unstable_by_key(|&(seam, _)| seam);
         Ok(list
             .into_iter()
-            .map(|((side, first, second), count)| (first, second, Side::ALL[side], count))
+            .map(|(seam, count)| (seam.first, seam.second, Side::ALL[seam.side], count))
             .collect())
     }
 }
 
-type SeamCounts = HashMap<(usize, BlockRef, BlockRef), u64>;
+/// Counts the seams of one end with the end to the right and along itself.
+fn count_column(
+    edge_fix: &EdgeFix,
+    here: &[Option<Shown>],
+    right: &[Option<Shown>],
+    set_at: impl Fn(i64, usize) -> u16,
+    counts: &mut SeamCounts,
+) {
+    for pick in 0..here.len().saturating_sub(1) {
+        let at = |step: i64, column: &[Option<Shown>], pick: usize| {
+            let block = column[pick]?.shown;
+            let set = set_at(step, pick);
+            Some(BlockRef { set, block })
+        };
+        let Some(first) = at(0, here, pick) else {
+            continue;
+        };
+        let beside = [
+            (Side::Right, at(1, right, pick)),
+            (Side::Above, at(0, here, pick + 1)),
+        ];
+        for (side, second) in beside {
+            let Some(second) = second else { continue };
+            if !edge_fix.continues(first, side, second) {
+                let side = side.index();
+                *counts
+                    .entry(Seam {
+                        first,
+                        second,
+                        side,
+                    })
+                    .or_insert(0) += 1;
+            }
+        }
+    }
+}
+
+/// Two blocks that meet at a side of the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Seam {
+    first: BlockRef,
+    second: BlockRef,
+    side: usize,
+}
+
+impl Hash for Seam {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let word = |block: BlockRef| u64::from(block.set) << 16 | u64::from(block.block);
+        state.write_u64(word(self.first) << 32 | word(self.second));
+        state.write_u64(self.side as u64);
+    }
+}
+
+type SeamCounts = HashMap<Seam, u64, BuildHasherDefault<Multiplying>>;
+
+/// A hasher for words that nobody chooses to collide.
+#[derive(Default)]
+struct Multiplying(u64);
+
+impl Hasher for Multiplying {
+    fn finish(&self) -> u64 {
+        self.0 ^ self.0 >> 32
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes
+            .iter()
+            .for_each(|&byte| self.write_u64(u64::from(byte)));
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
 
 /// Jumps in height at the seams, root mean square, in voxels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

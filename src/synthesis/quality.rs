@@ -9,6 +9,7 @@ use crate::job::Job;
 use super::SynthesisError;
 use super::assign::{Assignment, column_keys};
 use super::catalogue::{Catalogue, Side, matching_neighbours};
+use super::lookup::{Placement, Shown};
 use super::shift::Randomisation;
 
 /// Zhao's measure of continuity, summed over all crossings of one repeat of the design:
@@ -55,21 +56,26 @@ impl Quality {
         randomisation: Randomisation,
         job: &Job,
     ) -> Result<Self, SynthesisError> {
-        let columns: Vec<Self> = (0..assignment.ends())
-            .into_par_iter()
-            .map_init(Buffers::default, |buffers, end| {
-                job.check()?;
-                Ok(column_quality(
-                    pattern,
-                    assignment,
-                    catalogue,
-                    randomisation,
-                    end,
-                    buffers,
-                ))
+        let placement = Placement {
+            catalogue,
+            assignment,
+            randomisation,
+        };
+        let ends: Vec<u32> = (0..assignment.ends()).collect();
+        let share = ends.len().div_ceil(4 * rayon::current_num_threads());
+        let parts: Vec<Self> = ends
+            .par_chunks(share.max(1))
+            .map(|ends| {
+                let mut buffers = Buffers::default();
+                let mut sum = Self::default();
+                for &end in ends {
+                    job.check()?;
+                    sum = sum.plus(column_quality(pattern, &placement, end, &mut buffers));
+                }
+                Ok(sum)
             })
             .collect::<Result<_, SynthesisError>>()?;
-        Ok(columns.into_iter().fold(Self::default(), Self::plus))
+        Ok(parts.into_iter().fold(Self::default(), Self::plus))
     }
 
     fn plus(self, other: Self) -> Self {
@@ -89,57 +95,50 @@ impl Quality {
     }
 }
 
-/// A column of the cloth with one row more than the design: before and after shifting.
+/// Kept from one column to the next.
 #[derive(Default)]
 struct Buffers {
     keys: Vec<u8>,
-    here: Vec<Option<(u16, u16)>>,
-    right: Vec<Option<(u16, u16)>>,
+    here: Vec<Option<Shown>>,
+    right: Vec<Option<Shown>>,
 }
 
 /// The part of one end: its crossings, and its pairs with the end to the right and the
-/// pick above.
+/// pick above. Ends come in order, so that the last right column is this one.
 fn column_quality(
     pattern: &WeavePattern,
-    assignment: &Assignment,
-    catalogue: &Catalogue,
-    randomisation: Randomisation,
+    placement: &Placement<'_>,
     end: u32,
     buffers: &mut Buffers,
 ) -> Quality {
+    let catalogue = placement.catalogue;
     let Buffers { keys, here, right } = buffers;
     keys.clear();
-    column_keys(pattern, assignment.lattice(), end, keys);
-    let fill = |column: &mut Vec<Option<(u16, u16)>>, end: i64| {
-        column.clear();
-        column.extend((0..=i64::from(assignment.picks())).map(|pick| {
-            let block = assignment.at(end, pick)?;
-            Some((block, randomisation.apply(catalogue, block, end, pick)))
-        }));
-    };
-    fill(here, i64::from(end));
-    fill(right, i64::from(end) + 1);
+    column_keys(pattern, placement.assignment.lattice(), end, keys);
+    if right.is_empty() {
+        placement.column(i64::from(end), right);
+    }
+    std::mem::swap(here, right);
+    placement.column(i64::from(end) + 1, right);
 
     let mut quality = Quality::default();
     for (pick, &key) in keys.iter().enumerate() {
-        let Some((block, shown)) = here[pick] else {
-            continue;
-        };
-        let matches = matching_neighbours(key, catalogue.key(block));
+        let Some(block) = here[pick] else { continue };
+        let own = catalogue.key(block.assigned);
+        let matches = matching_neighbours(key, own);
         quality.crossings += 1;
         quality.consistency += u64::from(matches);
         quality.consistency_max += 4;
-        quality.incorrect += u64::from((key ^ catalogue.key(block)) & 1);
+        quality.incorrect += u64::from((key ^ own) & 1);
         quality.mismatched += u64::from(matches < 4);
-        for (side, neighbour) in [(Side::Right, right[pick]), (Side::Above, here[pick + 1])] {
-            let Some((other, other_shown)) = neighbour else {
-                continue;
-            };
-            let before = 2 * u64::from(catalogue.continues(block, side, other));
+        for (side, other) in [(Side::Right, right[pick]), (Side::Above, here[pick + 1])] {
+            let Some(other) = other else { continue };
+            // Each pair counts from both of its sides.
+            let before = 2 * u64::from(catalogue.continues(block.assigned, side, other.assigned));
+            let after = 2 * u64::from(catalogue.continues(block.shown, side, other.shown));
             quality.continuity.max += 2;
             quality.continuity.before += before;
-            quality.continuity.after +=
-                2 * u64::from(catalogue.continues(shown, side, other_shown));
+            quality.continuity.after += after;
             if side == Side::Above {
                 quality.continuity.before_along += before;
             }

@@ -19,7 +19,7 @@ const STATIONS: usize = 32;
 const INCOMPRESSIBLE: f32 = 0.45;
 
 /// Share of its room that a yarn loses where it dives from face to face.
-const SQUEEZE: f32 = 0.22;
+const SQUEEZE: f32 = 0.13;
 
 /// The two directions of yarns in a weave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -219,6 +219,32 @@ impl WeaveGeometry {
             })
     }
 
+    /// Height of a yarn's upper or lower surface at a place of the cloth, mm: `along` the
+    /// yarn and `across` it; `None` beside the yarn.
+    pub fn surface(
+        &self,
+        direction: Direction,
+        index: usize,
+        along: f32,
+        across: f32,
+        upper: bool,
+    ) -> Option<f32> {
+        let section = self.yarns(direction)[index].at(along);
+        let offset = across - section.across;
+        let u = offset
+            / if offset < 0.0 {
+                section.lower
+            } else {
+                section.upper
+            };
+        let chord = 1.0 - u * u;
+        if !(chord > 0.0) {
+            return None;
+        }
+        let v = if upper { chord.sqrt() } else { -chord.sqrt() };
+        Some(self.place(direction, index, along, u, v).z)
+    }
+
     /// The point of a yarn's section at (`u`, `v`) in units of its half-width and
     /// half-height, `along` mm from the repeat's start; x and y are not wrapped.
     pub fn place(&self, direction: Direction, index: usize, along: f32, u: f32, v: f32) -> Vec3 {
@@ -370,7 +396,7 @@ fn lay_yarn(
             let spread = 0.4 * (float - 0.5).max(0.0);
             let room = |other: f32| {
                 let apart = 0.5 * (own[station] - other).abs();
-                side.pitch * (0.49 + spread * apart * apart) * squeeze
+                side.pitch * (0.515 + spread * apart * apart) * squeeze
             };
             let thickness = 1.0 + recipe.unevenness * 1.6 * noise(0);
             let (lower, low_height) = side.half_sizes(aspect, room(before[station]));

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses, colour};
 use pickglass::design::{Design, Family, Filled, Sett, Srgb, Structure, Yarn, YarnId, YarnMaps};
-use pickglass::exemplar::ExemplarSet;
+use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::synthesis::Catalogue;
 

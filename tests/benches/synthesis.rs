@@ -39,6 +39,17 @@ fn damask(ends: u32, picks: u32) -> WeavePattern {
     })
 }
 
+/// Processor time of this process in seconds, all threads: what counts on a busy machine.
+fn processor_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = stat.rsplit(')').next().unwrap_or("").split_whitespace();
+    let ticks = fields
+        .skip(11)
+        .take(2)
+        .filter_map(|ticks| ticks.parse::<f64>().ok());
+    ticks.sum::<f64>() / 100.0
+}
+
 /// The best of a few runs, in seconds, with the last result.
 fn best_of<T>(runs: u32, mut work: impl FnMut() -> T) -> (f64, T) {
     let mut best = f64::INFINITY;
@@ -87,6 +98,14 @@ fn stages(name: &str, pattern: &WeavePattern, lattice: Lattice, runs: u32) -> As
     let before = peak_mb();
     println!("{name}: {} x {}", pattern.ends(), pattern.picks());
     let mut last = None;
+    let cpu = processor_seconds();
+    for _ in 0..runs {
+        black_box(assign(pattern, lattice, &catalogue, Method::Dp, 1, &job).expect("assigned"));
+    }
+    println!(
+        "  dp: {:.3} processor seconds a run",
+        (processor_seconds() - cpu) / f64::from(runs)
+    );
     for method in [Method::Naive, Method::Greedy, Method::Dp] {
         let (seconds, assignment) = best_of(runs, || {
             assign(pattern, lattice, &catalogue, method, 1, &job).expect("assigned")
@@ -145,6 +164,18 @@ fn seams(pattern: &WeavePattern, assignment: &Assignment) {
             fix.bytes() as f64 / 1e6,
             rms.seams
         );
+        let cpu = processor_seconds();
+        for _ in 0..3 {
+            let quality = Quality::measure(pattern, assignment, &catalogue, RANDOMISATION, &job);
+            black_box(quality.expect("measured"));
+        }
+        let quality = (processor_seconds() - cpu) / 3.0;
+        for _ in 0..3 {
+            let rms = placement.seam_rms(&fix, &heights, |_, _| 0, &job);
+            black_box(rms.expect("measured"));
+        }
+        let rms = (processor_seconds() - cpu) / 3.0 - quality;
+        println!("  processor seconds a run: quality {quality:.3}, seam_rms {rms:.3}");
         let count = 1_000_000u64;
         let lookups: Vec<(i64, i64, usize, usize)> = (0..count)
             .map(|n| {

@@ -1,6 +1,8 @@
 //! Scenes shared by the renderer's tests: procedural yarns in a dense grid.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod peer;
+
 use glam::{UVec3, Vec3};
 use pickglass::render::random::mix;
 use pickglass::render::{Bounds, LightRig, RenderOutcome, RenderSettings, Sky, Sun};

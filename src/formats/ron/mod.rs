@@ -81,7 +81,7 @@ struct Fault {
 
 impl Fault {
     fn new(place: &'static str, problem: impl ToString) -> Self {
-        let problem = problem.to_string();
+        let problem = one_line(&problem.to_string());
         Self { place, problem }
     }
 }
@@ -150,14 +150,17 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Design, RonError> {
     }
 }
 
+/// A message on one line, whatever it quotes.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 fn damaged(file: String, error: &::ron::error::SpannedError) -> RonError {
-    let problem = error.code.to_string();
     RonError::Damaged {
         file,
         line: error.span.start.line,
         column: error.span.start.col,
-        // One line, whatever was quoted.
-        problem: problem.split_whitespace().collect::<Vec<_>>().join(" "),
+        problem: one_line(&error.code.to_string()),
     }
 }
 
@@ -175,6 +178,7 @@ pub fn write(design: &Design) -> Result<String, RonError> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 

@@ -3,7 +3,11 @@
 //! These types are what a file says and nothing else: they never change once released,
 //! while the design's own types may.
 
-use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{Error as _, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::Fault;
 use super::image::{read_map, read_pattern, write_map, write_pattern};
@@ -22,12 +26,12 @@ pub(super) struct Document {
 #[derive(Serialize, Deserialize)]
 struct DesignV1 {
     name: String,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    notes: Vec<String>,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    notes: String,
     ends: u32,
     picks: u32,
     structure: StructureV1,
-    yarns: Vec<YarnV1>,
+    yarns: Limited<YarnV1, MAX_YARNS>,
     warp: MapV1,
     weft: MapV1,
     sett: SettV1,
@@ -76,7 +80,7 @@ struct DraftV1 {
 #[derive(Serialize, Deserialize)]
 struct RegionsV1 {
     map: Image,
-    palette: Vec<RegionV1>,
+    palette: Limited<RegionV1, MAX_REGIONS>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     corrections: Option<CorrectionsV1>,
 }
@@ -121,9 +125,9 @@ struct SettV1 {
     ends_per_cm: f32,
     picks_per_cm: f32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    end_pitches_mm: Option<Vec<f32>>,
+    end_pitches_mm: Option<Limited<f32, MAX_ORDER>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pick_pitches_mm: Option<Vec<f32>>,
+    pick_pitches_mm: Option<Limited<f32, MAX_ORDER>>,
     #[serde(default)]
     assumed: bool,
 }
@@ -147,8 +151,9 @@ struct OriginV1 {
     ends: Option<StatedV1>,
     #[serde(skip_serializing_if = "Option::is_none")]
     picks: Option<StatedV1>,
-    palette: Vec<String>,
-    sections: Vec<SectionV1>,
+    /// Colours separated by blanks.
+    palette: String,
+    sections: Limited<SectionV1, MAX_SECTIONS>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -159,15 +164,62 @@ struct StatedV1 {
     #[serde(default)]
     thickness: Option<f32>,
     #[serde(default)]
-    spacings: Vec<(u32, f32)>,
+    spacings: Limited<(u32, f32), MAX_ORDER>,
     #[serde(default)]
-    thicknesses: Vec<(u32, f32)>,
+    thicknesses: Limited<(u32, f32), MAX_ORDER>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct SectionV1 {
     name: String,
-    lines: Vec<String>,
+    text: String,
+}
+
+/// The most yarns that can be numbered.
+const MAX_YARNS: usize = 1 << 16;
+/// The most regions that can be numbered.
+const MAX_REGIONS: usize = 1 << 16;
+/// More sections than any program writes.
+const MAX_SECTIONS: usize = 4096;
+/// The longest yarn order or list of pitches a file may have.
+const MAX_ORDER: usize = 1 << 20;
+
+/// A list that is refused, while it is read, beyond `MOST` items.
+#[derive(Serialize)]
+#[serde(transparent)]
+struct Limited<T, const MOST: usize>(Vec<T>);
+
+impl<T, const MOST: usize> Default for Limited<T, MOST> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T, MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Items<T, const MOST: usize>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for Items<T, MOST> {
+            type Value = Vec<T>;
+
+            fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(out, "a list of at most {MOST}")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Vec<T>, A::Error> {
+                let mut list = Vec::new();
+                while let Some(item) = items.next_element()? {
+                    if list.len() >= MOST {
+                        return Err(A::Error::invalid_length(MOST + 1, &self));
+                    }
+                    list.push(item);
+                }
+                Ok(list)
+            }
+        }
+        deserializer
+            .deserialize_seq(Items::<T, MOST>(PhantomData))
+            .map(Self)
+    }
 }
 
 pub(super) fn parse(text: &str) -> Result<Document, ::ron::error::SpannedError> {
@@ -200,6 +252,7 @@ pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
     }
     let yarns = file
         .yarns
+        .0
         .into_iter()
         .map(yarn)
         .collect::<Result<Vec<_>, _>>()?;
@@ -207,7 +260,10 @@ pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
         warp: map("warp", file.warp, ends, picks)?,
         weft: map("weft", file.weft, ends, picks)?,
     };
-    let density = |per_cm, pitches_mm| Density { per_cm, pitches_mm };
+    let density = |per_cm, pitches: Option<Limited<f32, MAX_ORDER>>| Density {
+        per_cm,
+        pitches_mm: pitches.map(|list| list.0),
+    };
     let sett = Sett {
         ends: density(file.sett.ends_per_cm, file.sett.end_pitches_mm),
         picks: density(file.sett.picks_per_cm, file.sett.pick_pitches_mm),
@@ -248,7 +304,7 @@ fn structure(found: StructureV1, ends: u32, picks: u32) -> Result<Structure, Fau
             let map = read_map(&found.map, ends, picks);
             let map = map.map_err(|problem| Fault::new("regions", problem))?;
             let mut palette = Vec::new();
-            for region in found.palette {
+            for region in found.palette.0 {
                 palette.push(Region {
                     name: region.name,
                     fill: fill("region", region.fill)?,
@@ -281,9 +337,6 @@ fn fill(place: &'static str, found: FillV1) -> Result<Fill, Fault> {
     }
 }
 
-/// Shafts and treadles are refused above this; no loom has so many.
-const MAX_SHAFTS: u32 = 100_000;
-
 /// Reads sets; as many as `count` unless that is `None`.
 fn sets(place: &'static str, text: &str, count: Option<u32>) -> Result<Ties, Fault> {
     let mut ties = Ties::default();
@@ -291,8 +344,8 @@ fn sets(place: &'static str, text: &str, count: Option<u32>) -> Result<Ties, Fau
     for word in text.split_whitespace() {
         set.clear();
         for member in word.split(',').filter(|_| word != "-") {
-            match member.parse::<u32>() {
-                Ok(member) if (1..=MAX_SHAFTS).contains(&member) => set.push(member - 1),
+            match member.parse::<u16>() {
+                Ok(member) if member > 0 => set.push(member - 1),
                 _ => {
                     let word: String = word.chars().take(40).collect();
                     let problem = format!("expected numbers from 1 or -, found \"{word}\"");
@@ -312,10 +365,6 @@ fn sets(place: &'static str, text: &str, count: Option<u32>) -> Result<Ties, Fau
 }
 
 fn draft(found: DraftV1, ends: u32, picks: u32) -> Result<Draft, Fault> {
-    if found.shafts > MAX_SHAFTS || found.treadles > MAX_SHAFTS {
-        let problem = format!("expected at most {MAX_SHAFTS} shafts and treadles");
-        return Err(Fault::new("draft", problem));
-    }
     let threading = sets("threading", &found.threading, Some(ends))?;
     let lifting = match (found.tieup, found.treadling, found.liftplan) {
         (Some(tieup), Some(treadling), None) => Lifting::Treadled {
@@ -367,9 +416,6 @@ fn map(place: &'static str, found: MapV1, ends: u32, picks: u32) -> Result<YarnM
     }
 }
 
-/// The longest yarn order a file may ask for.
-const MAX_ORDER: usize = 1 << 20;
-
 fn order(place: &'static str, text: &str) -> Result<Vec<YarnId>, Fault> {
     let mut order = Vec::new();
     for word in text.split_whitespace() {
@@ -403,14 +449,15 @@ fn origin(found: OriginV1) -> Result<Origin, Fault> {
         },
         sections: found
             .sections
+            .0
             .into_iter()
-            .map(|SectionV1 { name, lines }| ForeignSection { name, lines })
+            .map(|SectionV1 { name, text }| ForeignSection { name, text })
             .collect(),
         ends: found.ends.map(stated).transpose()?,
         picks: found.picks.map(stated).transpose()?,
         palette: found
             .palette
-            .iter()
+            .split_whitespace()
             .map(|text| colour("palette", text))
             .collect::<Result<_, _>>()?,
     })
@@ -418,7 +465,7 @@ fn origin(found: OriginV1) -> Result<Origin, Fault> {
 
 fn stated(found: StatedV1) -> Result<StatedThreads, Fault> {
     let usual = [found.spacing, found.thickness].into_iter().flatten();
-    let single = found.spacings.iter().chain(&found.thicknesses);
+    let single = found.spacings.0.iter().chain(&found.thicknesses.0);
     let mut lengths = usual.chain(single.clone().map(|&(_, length)| length));
     if !lengths.all(|length| length.is_finite() && length > 0.0) {
         return Err(Fault::new("origin", "expected spacings above 0"));
@@ -433,8 +480,8 @@ fn stated(found: StatedV1) -> Result<StatedThreads, Fault> {
         unit: found.unit,
         spacing: found.spacing,
         thickness: found.thickness,
-        spacings: found.spacings,
-        thicknesses: found.thicknesses,
+        spacings: found.spacings.0,
+        thicknesses: found.thicknesses.0,
     })
 }
 
@@ -449,14 +496,14 @@ pub(super) fn of_design(design: &Design) -> Result<Document, String> {
         ends: design.ends(),
         picks: design.picks(),
         structure: of_structure(design.structure())?,
-        yarns: design.yarns().iter().map(of_yarn).collect(),
+        yarns: Limited(design.yarns().iter().map(of_yarn).collect()),
         warp: of_map(&design.maps().warp)?,
         weft: of_map(&design.maps().weft)?,
         sett: SettV1 {
             ends_per_cm: sett.ends.per_cm,
             picks_per_cm: sett.picks.per_cm,
-            end_pitches_mm: sett.ends.pitches_mm.clone(),
-            pick_pitches_mm: sett.picks.pitches_mm.clone(),
+            end_pitches_mm: sett.ends.pitches_mm.clone().map(Limited),
+            pick_pitches_mm: sett.picks.pitches_mm.clone().map(Limited),
             assumed: sett.assumed,
         },
         across: of_repeat(lattice.across),
@@ -494,7 +541,8 @@ fn of_structure(structure: &Structure) -> Result<StructureV1, String> {
                         origin: region.origin,
                     })
                 })
-                .collect::<Result<_, String>>()?,
+                .collect::<Result<_, String>>()
+                .map(Limited)?,
             corrections: match regions.corrections() {
                 None => None,
                 Some(found) => Some(CorrectionsV1 {
@@ -527,7 +575,10 @@ fn of_sets(ties: &Ties) -> Sets {
         .map(|set| match set {
             [] => "-".to_owned(),
             set => {
-                let members: Vec<String> = set.iter().map(|m| (m + 1).to_string()).collect();
+                let members: Vec<String> = set
+                    .iter()
+                    .map(|&m| (u32::from(m) + 1).to_string())
+                    .collect();
                 members.join(",")
             }
         })
@@ -592,8 +643,8 @@ fn of_origin(origin: &Origin) -> OriginV1 {
             unit: found.unit.clone(),
             spacing: found.spacing,
             thickness: found.thickness,
-            spacings: found.spacings.clone(),
-            thicknesses: found.thicknesses.clone(),
+            spacings: Limited(found.spacings.clone()),
+            thicknesses: Limited(found.thicknesses.clone()),
         })
     };
     OriginV1 {
@@ -602,14 +653,21 @@ fn of_origin(origin: &Origin) -> OriginV1 {
         first_pick_top: origin.first_pick == FirstPick::Top,
         ends: stated(&origin.ends),
         picks: stated(&origin.picks),
-        palette: origin.palette.iter().map(Srgb::to_string).collect(),
-        sections: origin
-            .sections
+        palette: origin
+            .palette
             .iter()
-            .map(|section| SectionV1 {
-                name: section.name.clone(),
-                lines: section.lines.clone(),
-            })
-            .collect(),
+            .map(Srgb::to_string)
+            .collect::<Vec<_>>()
+            .join(" "),
+        sections: Limited(
+            origin
+                .sections
+                .iter()
+                .map(|section| SectionV1 {
+                    name: section.name.clone(),
+                    text: section.text.clone(),
+                })
+                .collect(),
+        ),
     }
 }

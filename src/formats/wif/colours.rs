@@ -1,5 +1,7 @@
 //! Palette, colour table, and the colour of each thread.
 
+use std::collections::BTreeMap;
+
 use super::WifError;
 use super::read::{File, Warnings};
 use super::text::{bare, shorten};
@@ -21,7 +23,7 @@ impl Palette {
         let (low, high) = range(file, &rows, warnings);
         let mut table: Vec<(u32, Srgb)> = Vec::with_capacity(rows.len());
         let mut outside = None;
-        for (number, line, channels) in rows {
+        for (number, (line, channels)) in rows {
             let channels = channels.map(|value| {
                 if !(low..=high).contains(&value) {
                     outside.get_or_insert(line);
@@ -36,11 +38,6 @@ impl Palette {
             let what = format!("a colour lies outside Range={low},{high} and is cut off");
             warnings.at(line, what);
         }
-        // Later lines of the same number win: they come last among equals.
-        table.sort_by_key(|&(number, _)| number);
-        table.reverse();
-        table.dedup_by_key(|entry| entry.0);
-        table.reverse();
         Ok(Self { table })
     }
 
@@ -152,19 +149,21 @@ impl Palette {
     }
 }
 
-/// Number, line and channels as written.
-type Row = (u32, u32, [f32; 3]);
+/// By number: line and channels as written. Later lines of a number win.
+type Rows = BTreeMap<u32, (u32, [f32; 3])>;
 
-fn read_table(file: &File<'_>) -> Result<Vec<Row>, WifError> {
-    let mut rows = Vec::new();
+fn read_table(file: &File<'_>) -> Result<Rows, WifError> {
+    let mut rows = Rows::new();
     for section in file.all("COLOR TABLE") {
         for entry in section.entries(true) {
             let Some(value) = entry.value.as_deref() else {
                 continue;
             };
             let channels = channels(bare(value));
-            match (entry.key.parse::<u32>(), channels) {
-                (Ok(number), Some(channels)) => rows.push((number, entry.line, channels)),
+            match (entry.key.parse::<u16>(), channels) {
+                (Ok(number), Some(channels)) => {
+                    rows.insert(u32::from(number), (entry.line, channels));
+                }
                 _ => {
                     return Err(WifError::at(
                         file.name,
@@ -194,7 +193,7 @@ pub(super) fn channels(text: &str) -> Option<[f32; 3]> {
 }
 
 /// The palette's range; 0 to 255, or to the largest value, where it says nothing usable.
-fn range(file: &File<'_>, rows: &[Row], warnings: &mut Warnings) -> (f32, f32) {
+fn range(file: &File<'_>, rows: &Rows, warnings: &mut Warnings) -> (f32, f32) {
     let stated = file.value("COLOR PALETTE", "Range");
     if let Some((_, value)) = &stated {
         let mut ends = bare(value).split(',').map(|end| end.trim().parse::<f32>());
@@ -205,7 +204,7 @@ fn range(file: &File<'_>, rows: &[Row], warnings: &mut Warnings) -> (f32, f32) {
             return (low, high);
         }
     }
-    let most = rows.iter().flat_map(|row| row.2).fold(255.0f32, f32::max);
+    let most = rows.values().flat_map(|row| row.1).fold(255.0f32, f32::max);
     if !rows.is_empty() {
         let line = stated.map_or_else(|| file.line_of("COLOR TABLE").unwrap_or(1), |at| at.0);
         let what = format!("no usable Range in [COLOR PALETTE]; 0,{most} is taken");

@@ -45,9 +45,6 @@ pub use write::{Written, write};
 /// The most ends or picks a file may declare.
 pub const MAX_THREADS: u32 = 100_000;
 
-/// The most shafts or treadles a file may name.
-pub const MAX_SHAFTS: u32 = 100_000;
-
 /// The program default that is no sett, in cm.
 pub const DEFAULT_SPACING_CM: f32 = 0.212;
 

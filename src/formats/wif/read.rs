@@ -1,11 +1,14 @@
 //! A WIF becomes a design.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
 use super::text::{self, Section, bare, boolean, same, shorten};
 use super::threads::{self, Direction, Spacing};
-use super::{DEFAULT_SPACING_CM, MAX_SHAFTS, MAX_THREADS, WifError, colours};
+use super::{DEFAULT_SPACING_CM, MAX_THREADS, WifError, colours};
 use crate::design::{
-    Design, Draft, Family, ForeignSection, Lifting, Origin, Shed, Structure, Ties, YarnMaps,
-    check_size, usual_sett,
+    Design, Draft, Family, ForeignSection, Lifting, MAX_SHAFTS, Origin, Shed, Structure, Ties,
+    YarnMaps, check_size, usual_sett,
 };
 use crate::formats::{Imported, LoadOptions};
 
@@ -50,6 +53,13 @@ pub(super) struct Warnings {
 impl Warnings {
     pub fn at(&mut self, line: u32, what: impl AsRef<str>) {
         self.add(|| format!("line {line}: {}", what.as_ref()));
+    }
+
+    /// One warning more that nobody would read: not worth its words.
+    fn flooded(&mut self) -> bool {
+        let full = self.list.len() >= MAX_WARNINGS;
+        self.more += usize::from(full);
+        full
     }
 
     pub fn whole(&mut self, what: impl Into<String>) {
@@ -217,6 +227,9 @@ fn check_shape(file: &File<'_>, warnings: &mut Warnings) {
     for section in &file.sections {
         if section.line > 0 && OWN.iter().any(|own| same(own, section.name)) {
             for entry in section.entries(true).filter(|entry| entry.value.is_none()) {
+                if warnings.flooded() {
+                    continue;
+                }
                 let what = format!("\"{}\" has no \"=\" and is ignored", shorten(entry.key));
                 warnings.at(entry.line, what);
             }
@@ -241,13 +254,13 @@ fn foreign(file: &File<'_>) -> Vec<ForeignSection> {
         .filter(|section| section.line > 0 && !known(section.name))
         .map(|section| ForeignSection {
             name: section.name.to_owned(),
-            lines: section.verbatim(),
+            text: section.verbatim(),
         })
         .collect()
 }
 
 /// Title and notes; addresses are left behind.
-fn read_texts(file: &File<'_>, warnings: &mut Warnings) -> (Option<String>, Vec<String>) {
+fn read_texts(file: &File<'_>, warnings: &mut Warnings) -> (Option<String>, String) {
     let title = file
         .value("TEXT", "Title")
         .map(|(_, title)| without_path(&title))
@@ -259,27 +272,42 @@ fn read_texts(file: &File<'_>, warnings: &mut Warnings) -> (Option<String>, Vec<
             warnings.at(line, format!("{contact} is personal and not kept"));
         }
     }
-    let mut notes: Vec<(u32, String)> = Vec::new();
-    for section in file.all("NOTES") {
-        for entry in section.entries(false) {
-            if let (Ok(place), Some(note)) = (entry.key.parse(), entry.value) {
-                notes.push((place, note.into_owned()));
-            }
-        }
-    }
-    notes.sort_by_key(|&(place, _)| place);
-    let mut notes: Vec<String> = notes.into_iter().map(|(_, note)| note).collect();
-    while notes.last().is_some_and(String::is_empty) {
-        notes.pop();
-    }
-    (title, notes)
+    (title, read_notes(file, warnings))
 }
 
-/// A list section as it stands: for each line a thread number and its members.
+/// More lines of notes than anybody writes.
+const MAX_NOTES: usize = 10_000;
+
+/// The notes in the order of their numbers.
+fn read_notes(file: &File<'_>, warnings: &mut Warnings) -> String {
+    let mut lines: BTreeMap<u32, Cow<'_, str>> = BTreeMap::new();
+    for section in file.all("NOTES") {
+        for entry in section.entries(false) {
+            let (Ok(place), Some(note)) = (entry.key.parse(), entry.value) else {
+                continue;
+            };
+            if lines.len() >= MAX_NOTES && !lines.contains_key(&place) {
+                let what = format!("notes beyond {MAX_NOTES} lines are left out");
+                warnings.at(entry.line, what);
+                break;
+            }
+            lines.insert(place, note);
+        }
+    }
+    let mut notes = String::new();
+    for line in lines.values() {
+        notes.push_str(line);
+        notes.push('\n');
+    }
+    notes.truncate(notes.trim_end().len());
+    notes
+}
+
+/// A list section as it stands: for each thread named, its members.
 struct Rows {
-    /// Thread as written, line, and where its members start and end.
-    rows: Vec<(u32, u32, u32, u32)>,
-    members: Vec<u32>,
+    /// By thread as written: line, and where its members start and end.
+    rows: BTreeMap<u32, (u32, u32, u32)>,
+    members: Vec<u16>,
 }
 
 impl Rows {
@@ -288,105 +316,104 @@ impl Rows {
         name: &'static str,
         warnings: &mut Warnings,
     ) -> Result<Self, WifError> {
+        // As many members as separators, at most: one allocation of the right size.
+        let separators = |section: &Section<'_>| {
+            let marks = section.body.bytes().filter(|byte| b"=,".contains(byte));
+            marks.count()
+        };
         let mut found = Self {
-            rows: Vec::new(),
-            members: Vec::new(),
+            rows: BTreeMap::new(),
+            members: Vec::with_capacity(file.all(name).map(separators).sum()),
         };
         for section in file.all(name) {
             for entry in section.entries(true) {
                 let Some(value) = &entry.value else {
                     continue;
                 };
-                let Ok(thread) = bare(entry.key).parse::<u32>() else {
+                let thread = bare(entry.key).parse::<u32>().ok();
+                let Some(thread) = thread.filter(|&thread| thread <= MAX_THREADS) else {
                     let what = format!("\"{}\" in [{name}] is no thread", shorten(entry.key));
                     warnings.at(entry.line, format!("{what}; ignored"));
                     continue;
                 };
                 let from = found.members.len() as u32;
-                for member in bare(value).split(',').map(str::trim) {
-                    if member.is_empty() {
-                        continue;
-                    }
-                    match member.parse::<u32>() {
-                        Ok(member) if member <= MAX_SHAFTS => found.members.push(member),
-                        _ => {
-                            return Err(WifError::at(
-                                file.name,
-                                entry.line,
-                                format!(
-                                    "expected numbers up to {MAX_SHAFTS} separated by commas \
-                                     in [{name}], found \"{}\"",
-                                    shorten(member)
-                                ),
-                                "correct the list",
-                            ));
-                        }
-                    }
-                }
+                found.read_members(file.name, name, entry.line, bare(value))?;
                 let to = found.members.len() as u32;
-                found.rows.push((thread, entry.line, from, to));
+                let again = found.rows.insert(thread, (entry.line, from, to)).is_some();
+                if again && !warnings.flooded() {
+                    let what = format!("thread {thread} in [{name}] stands there again");
+                    warnings.at(entry.line, format!("{what}; the later line counts"));
+                }
             }
         }
-        // Later lines of the same thread come last and win.
-        found.rows.sort_by_key(|&(thread, line, ..)| (thread, line));
         Ok(found)
     }
 
+    fn read_members(
+        &mut self,
+        file: &str,
+        name: &str,
+        line: u32,
+        list: &str,
+    ) -> Result<(), WifError> {
+        for member in list.split(',').map(str::trim) {
+            if member.is_empty() {
+                continue;
+            }
+            let Ok(member) = member.parse::<u16>() else {
+                let problem = format!(
+                    "expected numbers up to {MAX_SHAFTS} separated by commas in [{name}], \
+                     found \"{}\"",
+                    shorten(member)
+                );
+                return Err(WifError::at(file, line, problem, "correct the list"));
+            };
+            self.members.push(member);
+        }
+        Ok(())
+    }
+
+    fn members(&self, &(_, from, to): &(u32, u32, u32)) -> &[u16] {
+        &self.members[from as usize..to as usize]
+    }
+
+    fn first_thread(&self) -> Option<u32> {
+        self.rows.keys().next().copied()
+    }
+
     fn largest_thread(&self) -> u32 {
-        self.rows.last().map_or(0, |&(thread, ..)| thread)
+        self.rows.keys().next_back().copied().unwrap_or(0)
     }
 
     fn largest_member(&self) -> u32 {
-        self.members.iter().copied().max().unwrap_or(0)
+        let most = self.rows.values().flat_map(|row| self.members(row)).max();
+        most.map_or(0, |&member| u32::from(member))
     }
 
     /// Whether any line names a member other than 0.
     fn says_something(&self) -> bool {
-        self.members.iter().any(|&member| member > 0)
+        let mut all = self.rows.values().flat_map(|row| self.members(row));
+        all.any(|&member| member > 0)
     }
 
-    /// `threads` sets counted from 0, from rows counted from `base` with members counted
-    /// from `member_base` (0 in a file that counts from 1 means none).
-    fn ties(
-        &self,
-        name: &str,
-        threads: u32,
-        base: u32,
-        member_base: u32,
-        warnings: &mut Warnings,
-    ) -> Ties {
-        let mut ties = Ties::default();
+    /// `threads` sets counted from 0, from rows and members counted from `base` (0 in a
+    /// file that counts from 1 means none).
+    fn ties(&self, name: &str, threads: u32, base: u32, warnings: &mut Warnings) -> Ties {
+        let mut ties = Ties::with_room(threads as usize, self.members.len());
         let mut set = Vec::new();
-        let mut next = 0;
-        for thread in 0..threads {
+        let from = base as u16;
+        for thread in base..threads + base {
             set.clear();
-            let mut seen = false;
-            while let Some(&(written, line, from, to)) = self.rows.get(next)
-                && written < thread + base + 1
-            {
-                next += 1;
-                if written < base {
-                    let what = format!("thread {written} in [{name}] is ignored: the first is 1");
-                    warnings.at(line, what);
-                    continue;
-                }
-                if seen {
-                    let what = format!("thread {written} in [{name}] stands there again");
-                    warnings.at(line, format!("{what}; the later line counts"));
-                }
-                seen = true;
-                set.clear();
-                set.extend(
-                    self.members[from as usize..to as usize]
-                        .iter()
-                        .filter_map(|member| member.checked_sub(member_base)),
-                );
+            if let Some(row) = self.rows.get(&thread) {
+                let members = self.members(row).iter();
+                set.extend(members.filter_map(|member| member.checked_sub(from)));
             }
             ties.push(&set);
         }
-        if let Some(&(written, line, ..)) = self.rows.get(next) {
-            let what = format!("thread {written} in [{name}] is beyond the last ({threads})");
-            warnings.at(line, format!("{what}; it and those after it are ignored"));
+        let outside = |thread: u32| !(base..threads + base).contains(&thread);
+        if let Some((&thread, &(line, ..))) = self.rows.iter().find(|row| outside(*row.0)) {
+            let what = format!("thread {thread} in [{name}] is beyond the last ({threads})");
+            warnings.at(line, format!("{what} and ignored, as are any other such"));
         }
         ties
     }
@@ -441,7 +468,7 @@ fn read_draft(file: &File<'_>, warnings: &mut Warnings) -> Result<(Draft, bool),
         let problem = "expected a [THREADING] with the shaft of each end, found none";
         return Err(WifError::whole(file.name, problem, "add the threading"));
     }
-    let zero_based = threading.rows[0].0 == 0
+    let zero_based = threading.first_thread() == Some(0)
         && file.count("WARP", "Threads", MAX_THREADS)? != Some(threading.largest_thread());
     if zero_based {
         warnings.whole("thread 0 is threaded: the file counts threads and shafts from 0");
@@ -473,7 +500,7 @@ fn read_draft(file: &File<'_>, warnings: &mut Warnings) -> Result<(Draft, bool),
         "Shafts",
         warnings,
     );
-    let threading = threading.ties("THREADING", ends, base, base, warnings);
+    let threading = threading.ties("THREADING", ends, base, warnings);
     let shed = read_shed(file, warnings);
     let declared = file.count("WEAVING", "Treadles", MAX_SHAFTS)?;
     let make = |lifting, treadles| {
@@ -484,14 +511,14 @@ fn read_draft(file: &File<'_>, warnings: &mut Warnings) -> Result<(Draft, bool),
         let tied = highest(tieup.largest_thread());
         let treadles = at_least(declared, tied, "Treadles", warnings);
         check_treadles(file, &treadling, treadles, base)?;
-        let tieup = tieup.ties("TIEUP", treadles, base, base, warnings);
-        let treadling = treadling.ties("TREADLING", picks, base, base, warnings);
+        let tieup = tieup.ties("TIEUP", treadles, base, warnings);
+        let treadling = treadling.ties("TREADLING", picks, base, warnings);
         Some(make(Lifting::Treadled { tieup, treadling }, treadles)?)
     } else {
         None
     };
     let by_plan = if lifted {
-        let plan = plan.ties("LIFTPLAN", picks, base, base, warnings);
+        let plan = plan.ties("LIFTPLAN", picks, base, warnings);
         Some(make(
             Lifting::LiftPlan(plan),
             shafts.max(declared.unwrap_or(0)),
@@ -531,12 +558,12 @@ fn check_treadles(
     treadles: u32,
     base: u32,
 ) -> Result<(), WifError> {
-    for &(_, line, from, to) in &treadling.rows {
-        for &treadle in &treadling.members[from as usize..to as usize] {
-            if treadle + (1 - base) > treadles {
+    for row in treadling.rows.values() {
+        for &treadle in treadling.members(row) {
+            if u32::from(treadle) + (1 - base) > treadles {
                 return Err(WifError::at(
                     file.name,
-                    line,
+                    row.0,
                     format!("expected treadles up to {treadles}, found treadle {treadle}"),
                     "tie that treadle up in [TIEUP] or correct the number",
                 ));

@@ -139,15 +139,19 @@ impl<'t> Section<'t> {
             .map(move |(index, line)| (first.max(1) + index as u32, line))
     }
 
-    /// Its lines word for word, without blank and empty comment lines at the end.
-    pub fn verbatim(&self) -> Vec<String> {
-        let mut kept: Vec<String> = self.numbered().map(|(_, line)| line.to_owned()).collect();
-        while kept
-            .last()
-            .is_some_and(|line| matches!(line.trim(), "" | ";"))
-        {
-            kept.pop();
+    /// Its lines word for word, separated by `\n`, without blank and empty comment lines
+    /// at the end.
+    pub fn verbatim(&self) -> String {
+        let mut kept = String::with_capacity(self.body.len());
+        let mut worth = 0;
+        for (_, line) in self.numbered() {
+            kept.push_str(line);
+            if !matches!(line.trim(), "" | ";") {
+                worth = kept.len();
+            }
+            kept.push('\n');
         }
+        kept.truncate(worth);
         kept
     }
 
@@ -228,6 +232,7 @@ pub(super) fn boolean(value: &str) -> Option<bool> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
 
@@ -277,6 +282,6 @@ mod tests {
     #[test]
     fn sections_come_back_word_for_word() {
         let found = parts("[X]\n a = b \n;c\n\n;\n\n[Y]");
-        assert_eq!(found[1].verbatim(), [" a = b ", ";c"]);
+        assert_eq!(found[1].verbatim(), " a = b \n;c");
     }
 }

@@ -1,5 +1,6 @@
 //! A design becomes a WIF.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::read::known;
@@ -101,20 +102,28 @@ struct Writer<'d> {
     design: &'d Design,
     /// Colours in the order of their numbers.
     palette: Vec<Srgb>,
+    /// Number of each colour, from 1.
+    numbers: BTreeMap<Srgb, usize>,
     sections: Vec<(String, String)>,
 }
 
 impl<'d> Writer<'d> {
     fn new(design: &'d Design) -> Self {
         let mut palette = design.origin.palette.clone();
+        let mut numbers = BTreeMap::new();
+        for (place, &colour) in palette.iter().enumerate() {
+            numbers.entry(colour).or_insert(place + 1);
+        }
         for yarn in design.yarns() {
-            if !palette.contains(&yarn.colour) {
+            numbers.entry(yarn.colour).or_insert_with(|| {
                 palette.push(yarn.colour);
-            }
+                palette.len()
+            });
         }
         Self {
             design,
             palette,
+            numbers,
             sections: Vec::new(),
         }
     }
@@ -126,8 +135,7 @@ impl<'d> Writer<'d> {
     /// The colour number of a yarn, from 1.
     fn number(&self, id: YarnId) -> usize {
         let colour = self.design.yarn(id).colour;
-        let place = self.palette.iter().position(|&entry| entry == colour);
-        place.map_or(1, |place| place + 1)
+        self.numbers.get(&colour).copied().unwrap_or(1)
     }
 
     fn all(mut self, draft: &Draft, (ends, picks): (u64, u64)) -> String {
@@ -158,10 +166,10 @@ impl<'d> Writer<'d> {
             if known(&kept.name) || kept.name.contains([']', '\n', '\r']) {
                 continue;
             }
-            let mut body = String::new();
-            for line in &kept.lines {
+            let mut body = String::with_capacity(kept.text.len() + 1);
+            for line in kept.text.lines() {
                 // A line that would open a section cannot have come from one.
-                if !line.trim_start().starts_with('[') && !line.contains(['\n', '\r']) {
+                if !line.trim_start().starts_with('[') && !line.contains('\r') {
                     let _ = writeln!(body, "{line}");
                 }
             }
@@ -175,7 +183,7 @@ impl<'d> Writer<'d> {
         self.section("TEXT", format!("Title={title}\n"));
         if !self.design.notes.is_empty() {
             let mut notes = String::new();
-            for (place, note) in self.design.notes.iter().enumerate() {
+            for (place, note) in self.design.notes.lines().enumerate() {
                 let _ = writeln!(notes, "{}={}", place + 1, one_line(note));
             }
             self.section("NOTES", notes);
@@ -208,72 +216,33 @@ impl<'d> Writer<'d> {
             YarnMap::Crossings(grid) if side == "WARP" => grid.get_wrapped(thread as i64, 0),
             YarnMap::Crossings(grid) => grid.get_wrapped(0, thread as i64),
         };
-        let numbers: Vec<usize> = self
-            .design
-            .yarns()
-            .iter()
-            .enumerate()
-            .map(|(id, _)| self.number(YarnId(id as u16)))
-            .collect();
-        let number = |thread: u64| numbers[usize::from(at(thread).0).min(numbers.len() - 1)];
+        let number = |thread: u64| self.number(at(thread));
         let first = number(0);
-        let mut body = String::new();
-        let _ = writeln!(body, "Threads={threads}\nColor={first}");
-        let unchanged = stated.filter(|stated| {
-            self.design.sett().assumed
-                || pitch_of(stated)
-                    .is_some_and(|pitch| (pitch / density.pitch_mm() - 1.0).abs() < 1e-4)
-        });
-        let (mut spacings, mut thicknesses) = (String::new(), String::new());
-        match unchanged {
-            Some(stated) => {
-                if !stated.unit.is_empty() {
-                    let _ = writeln!(body, "Units={}", one_line(&stated.unit));
-                }
-                if let Some(spacing) = stated.spacing {
-                    let _ = writeln!(body, "Spacing={spacing}");
-                }
-                if let Some(thickness) = stated.thickness {
-                    let _ = writeln!(body, "Thickness={thickness}");
-                }
-                for (thread, spacing) in &stated.spacings {
-                    let _ = writeln!(spacings, "{}={spacing}", thread + 1);
-                }
-                for (thread, thickness) in &stated.thicknesses {
-                    let _ = writeln!(thicknesses, "{}={thickness}", thread + 1);
-                }
-            }
-            // A sett that nobody chose is not written down as if somebody had.
-            None if self.design.sett().assumed => {}
-            None => {
-                let width = |thread| self.design.yarn(at(thread)).diameter() / 10.0;
-                let _ = writeln!(
-                    body,
-                    "Units=Centimeters\nSpacing={}",
-                    density.pitch_mm() / 10.0
-                );
-                let usual = width(0);
-                let _ = writeln!(body, "Thickness={usual}");
-                for thread in 0..threads {
-                    if density.pitches_mm.is_some() {
-                        let pitch = density.pitch_of(thread as i64) / 10.0;
-                        let _ = writeln!(spacings, "{}={pitch}", thread + 1);
-                    }
-                    if width(thread) != usual {
-                        let _ = writeln!(thicknesses, "{}={}", thread + 1, width(thread));
-                    }
-                }
-            }
-        }
-        self.section(side, body);
+        let mut colours = String::new();
         if (1..threads).any(|thread| number(thread) != first) {
-            let mut colours = String::new();
             for thread in 0..threads {
                 let _ = writeln!(colours, "{}={}", thread + 1, number(thread));
             }
-            self.section(&format!("{side} COLORS"), colours);
         }
-        for (what, list) in [("SPACING", spacings), ("THICKNESS", thicknesses)] {
+        let width = |thread| self.design.yarn(at(thread)).diameter() / 10.0;
+        let assumed = self.design.sett().assumed;
+        let unchanged = stated.filter(|stated| {
+            let same = |pitch: f32| (pitch / density.pitch_mm() - 1.0).abs() < 1e-4;
+            assumed || pitch_of(stated).is_some_and(same)
+        });
+        let lengths = match unchanged {
+            Some(stated) => Lengths::stated(stated),
+            // A sett that nobody chose is not written down as if somebody had.
+            None if assumed => Lengths::default(),
+            None => Lengths::chosen(density, threads, width),
+        };
+        let usual = &lengths.usual;
+        self.section(side, format!("Threads={threads}\nColor={first}\n{usual}"));
+        for (what, list) in [
+            ("COLORS", colours),
+            ("SPACING", lengths.spacings),
+            ("THICKNESS", lengths.thicknesses),
+        ] {
             if !list.is_empty() {
                 self.section(&format!("{side} {what}"), list);
             }
@@ -320,6 +289,59 @@ impl<'d> Writer<'d> {
     }
 }
 
+/// Units, spacing and thickness of one direction as lines.
+#[derive(Default)]
+struct Lengths {
+    /// For [WARP] or [WEFT].
+    usual: String,
+    /// For single threads.
+    spacings: String,
+    thicknesses: String,
+}
+
+impl Lengths {
+    /// As the file said that the design is from.
+    fn stated(stated: &StatedThreads) -> Self {
+        let mut lines = Self::default();
+        if !stated.unit.is_empty() {
+            let _ = writeln!(lines.usual, "Units={}", one_line(&stated.unit));
+        }
+        if let Some(spacing) = stated.spacing {
+            let _ = writeln!(lines.usual, "Spacing={spacing}");
+        }
+        if let Some(thickness) = stated.thickness {
+            let _ = writeln!(lines.usual, "Thickness={thickness}");
+        }
+        for &(thread, spacing) in &stated.spacings {
+            let _ = writeln!(lines.spacings, "{}={spacing}", u64::from(thread) + 1);
+        }
+        for &(thread, thickness) in &stated.thicknesses {
+            let _ = writeln!(lines.thicknesses, "{}={thickness}", u64::from(thread) + 1);
+        }
+        lines
+    }
+
+    /// From the design's own sett and yarns; `width` in cm.
+    fn chosen(density: &Density, threads: u64, width: impl Fn(u64) -> f32) -> Self {
+        let (pitch, usual) = (density.pitch_mm() / 10.0, width(0));
+        let mut lines = Self {
+            usual: format!("Units=Centimeters\nSpacing={pitch}\nThickness={usual}\n"),
+            ..Self::default()
+        };
+        for thread in 0..threads {
+            if density.pitches_mm.is_some() {
+                let pitch = density.pitch_of(thread as i64) / 10.0;
+                let _ = writeln!(lines.spacings, "{}={pitch}", thread + 1);
+            }
+            let width = width(thread);
+            if width != usual {
+                let _ = writeln!(lines.thicknesses, "{}={width}", thread + 1);
+            }
+        }
+        lines
+    }
+}
+
 /// The stated pitch in mm.
 fn pitch_of(stated: &StatedThreads) -> Option<f32> {
     Some(stated.spacing? * unit_mm(&stated.unit)?)
@@ -331,7 +353,7 @@ fn one_line(text: &str) -> String {
 }
 
 /// `number=member,member…` lines counted from 1; the empty set is 0.
-fn list<'d>(count: u64, row: impl Fn(u64) -> &'d [u32]) -> String {
+fn list<'d>(count: u64, row: impl Fn(u64) -> &'d [u16]) -> String {
     let mut text = String::new();
     for index in 0..count {
         let _ = write!(text, "{}=", index + 1);
@@ -341,7 +363,7 @@ fn list<'d>(count: u64, row: impl Fn(u64) -> &'d [u32]) -> String {
         }
         for (place, member) in members.iter().enumerate() {
             let comma = if place > 0 { "," } else { "" };
-            let _ = write!(text, "{comma}{}", member + 1);
+            let _ = write!(text, "{comma}{}", u32::from(*member) + 1);
         }
         text.push('\n');
     }

@@ -1,0 +1,157 @@
+//! Crossings made ready in advance, for the part of the cloth that a picture shows.
+//!
+//! Nothing here decides anything: it is what [`ClothVolume`] would find out again and
+//! again, kept for a rectangle of crossings. Outside it the same is found out on the spot.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::build::ClothVolume;
+use crate::design::YarnId;
+use crate::synthesis::{Neighbourhood, Side};
+
+/// Most crossings that are made ready: a picture of more is not close enough to need it.
+const MOST: usize = 1 << 20;
+/// Threads kept beyond the rectangle, for yarns that bulge past it.
+const MARGIN: i64 = 8;
+
+/// A thread of the window.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Thread {
+    /// Where its stretch starts, mm.
+    pub start: f32,
+    /// Voxels a mm across it.
+    pub per_mm: f32,
+}
+
+/// A rectangle of crossings made ready.
+#[derive(Clone, Default)]
+pub(super) struct Window {
+    end: i64,
+    pick: i64,
+    width: usize,
+    height: usize,
+    /// Row by row; `None` where there is no cloth.
+    cells: Vec<Option<Neighbourhood>>,
+    ends: Vec<Thread>,
+    picks: Vec<Thread>,
+    /// Yarns of the ends and picks, with margins; empty when they change along a thread.
+    warp: Vec<YarnId>,
+    weft: Vec<YarnId>,
+}
+
+impl Window {
+    /// Position of a crossing in the window.
+    #[inline]
+    fn index(&self, end: i64, pick: i64) -> Option<(usize, usize)> {
+        let (x, y) = (
+            end.wrapping_sub(self.end) as usize,
+            pick.wrapping_sub(self.pick) as usize,
+        );
+        (x < self.width && y < self.height).then_some((x, y))
+    }
+
+    /// A crossing that was made ready: its threads and what stands around it. The inner
+    /// `None`: there is no cloth.
+    #[inline]
+    pub fn crossing(&self, end: i64, pick: i64) -> Option<(Thread, Thread, Option<Neighbourhood>)> {
+        let (x, y) = self.index(end, pick)?;
+        Some((self.ends[x], self.picks[y], self.cells[y * self.width + x]))
+    }
+
+    /// The yarn of an end.
+    #[inline]
+    pub fn warp(&self, end: i64) -> Option<YarnId> {
+        self.warp
+            .get(end.wrapping_sub(self.end - MARGIN) as usize)
+            .copied()
+    }
+
+    /// The yarn of a pick.
+    #[inline]
+    pub fn weft(&self, pick: i64) -> Option<YarnId> {
+        self.weft
+            .get(pick.wrapping_sub(self.pick - MARGIN) as usize)
+            .copied()
+    }
+}
+
+impl ClothVolume {
+    /// Makes the crossings of a rectangle of cloth ready (mm), as far as they are not too
+    /// many. Pictures are the same with or without it.
+    pub fn with_window(mut self, x: Range<f32>, y: Range<f32>) -> Self {
+        self.window = self.window_over(x, y).into();
+        self
+    }
+
+    fn window_over(&self, x: Range<f32>, y: Range<f32>) -> Window {
+        let first = |positions: &crate::design::Positions, range: &Range<f32>| {
+            let [from, to] = [range.start, range.end].map(|mm| positions.locate(mm.into()).0);
+            (
+                from - MARGIN,
+                (to - from).clamp(0, 1 << 20) as usize + 1 + 2 * MARGIN as usize,
+            )
+        };
+        let ((end, width), (pick, height)) = (first(&self.ends, &x), first(&self.picks, &y));
+        if width.saturating_mul(height) > MOST {
+            return Window::default();
+        }
+        let [bx, by, _] = self.grid.block;
+        let threads = |positions: &crate::design::Positions, first: i64, count: usize, voxels| {
+            let thread = |thread| Thread {
+                start: positions.start(thread) as f32,
+                per_mm: voxels as f32 / positions.pitch(thread) as f32,
+            };
+            (first..first + count as i64)
+                .map(thread)
+                .collect::<Vec<_>>()
+        };
+        let cells = (0..width * height)
+            .into_par_iter()
+            .map(|index| {
+                let (x, y) = ((index % width) as i64, (index / width) as i64);
+                self.seams_around(end + x, pick + y)
+            })
+            .collect();
+        let yarns =
+            |map: &crate::design::YarnMap, at: &dyn Fn(i64) -> YarnId, first: i64, count| {
+                let range = first - MARGIN..first + count as i64 + MARGIN;
+                if map.order().is_some() {
+                    range.map(at).collect()
+                } else {
+                    Vec::new()
+                }
+            };
+        Window {
+            end,
+            pick,
+            width,
+            height,
+            cells,
+            ends: threads(&self.ends, end, width, bx),
+            picks: threads(&self.picks, pick, height, by),
+            warp: yarns(&self.maps.warp, &|end| self.maps.warp(end, 0), end, width),
+            weft: yarns(
+                &self.maps.weft,
+                &|pick| self.maps.weft(0, pick),
+                pick,
+                height,
+            ),
+        }
+    }
+
+    /// A crossing's block and the neighbours that it has a seam with; neighbours that
+    /// continue it are left out, as they shift nothing.
+    pub(super) fn seams_around(&self, end: i64, pick: i64) -> Option<Neighbourhood> {
+        let set_at = |end, pick| self.set_at(end, pick);
+        let mut around = self.placement().neighbourhood(end, pick, set_at)?;
+        for side in Side::ALL {
+            let beside = &mut around.sides[side.index()];
+            if beside.is_some_and(|beside| self.edge_fix.continues(around.centre, side, beside)) {
+                *beside = None;
+            }
+        }
+        Some(around)
+    }
+}
