@@ -75,7 +75,7 @@ fn the_sett_decides_the_scale() {
         &["check", "oxford", "--sett", "20x10", "--json"],
     ));
     assert!((report["width_mm"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
-    assert!((report["height_mm"].as_f64().expect("a number") - 4.0).abs() < 1e-4);
+    assert!((report["height_mm"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
     assert_eq!(report["sett_assumed"], false);
 }
 

@@ -7,8 +7,7 @@ use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use pickglass::exemplar::{ExemplarSet, ExemplarStore};
 use pickglass::job::Job;
 use pickglass::synthesis::{
-    Catalogue, EdgeFix, Method, Placement, Quality, Randomisation, Rank, SeamRms,
-    SynthesisSettings, assign,
+    Catalogue, EdgeFix, Method, Placement, Quality, Randomisation, Rank, SeamRms, SynthesisSettings,
 };
 use serde_json::json;
 
@@ -61,38 +60,34 @@ struct Report {
 /// Runs the stages one by one, each timed; the exemplars they need are timed apart.
 fn measure(opened: &Opened, synthesis: SynthesisSettings, job: &Job) -> anyhow::Result<Report> {
     let design = &opened.design;
-    let begun = Instant::now();
-    let catalogue = Catalogue::standard();
-    let classes = YarnClasses::new(design);
     let cloth = ClothSettings {
         synthesis,
         ..ClothSettings::default()
     };
+    let catalogue = Catalogue::standard();
+    let begun = Instant::now();
+    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &cloth, job)?;
+    let assigning = begun.elapsed().as_secs_f64();
+
+    let begun = Instant::now();
+    let classes = YarnClasses::new(design);
     let grid = ClothVolume::grid_for(&catalogue, &classes, &cloth)?;
     let store = ExemplarStore::user();
-    let sets = classes
-        .pairs
-        .iter()
-        .map(|pair| store.get(&catalogue, pair, grid, job))
+    let sets = (classes.pairs.iter())
+        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
         .collect::<Result<Vec<Arc<ExemplarSet>>, _>>()?;
     let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
     let exemplar_seconds = begun.elapsed().as_secs_f64();
-
-    let begun = Instant::now();
-    let (weave, lattice) = (opened.weave(), design.lattice());
-    let (method, seed) = (synthesis.method, synthesis.seed);
-    let assignment = assign(weave, lattice, &catalogue, method, seed, job)?;
-    let assigning = begun.elapsed().as_secs_f64();
 
     let begun = Instant::now();
     let edge_fix = EdgeFix::new(&heights, &catalogue, synthesis.rank, job)?;
     let fixing = begun.elapsed().as_secs_f64();
 
     let randomisation = Randomisation {
-        seed,
+        seed: synthesis.seed,
         patch: synthesis.patch,
     };
-    let quality = Quality::measure(weave, &assignment, &catalogue, randomisation, job)?;
+    let quality = Quality::measure(opened.weave(), &assignment, &catalogue, randomisation, job)?;
     let placement = Placement {
         catalogue: &catalogue,
         assignment: &assignment,

@@ -389,7 +389,7 @@ fn build_full(desk: &Arc<Desk>, request: &PreviewRequest) {
         .spawn(move || {
             let (desk, request) = (thread_desk, thread_request);
             let built = catch_unwind(AssertUnwindSafe(|| {
-                still::prepare(&request.design, &request.still, &desk.store, &job)
+                in_own_pool(|| still::prepare(&request.design, &request.still, &desk.store, &job))
             }));
             let mut shared = desk.lock();
             if job.check().is_err() {
@@ -422,6 +422,14 @@ fn build_full(desk: &Arc<Desk>, request: &PreviewRequest) {
         });
     if spawned.is_ok() {
         shared.builder = Some((request.clone(), token));
+    }
+}
+
+/// Does `work` with threads of its own, so that it does not queue up before the drawing.
+fn in_own_pool<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
     }
 }
 
