@@ -155,7 +155,7 @@ impl BrickVolume {
         let bricks = voxels.len() / BRICK_VOXELS;
         let fits = size.iter().all(|n| *n > 0 && n % BRICK == 0)
             && index.len() == size.iter().map(|n| n / BRICK).product::<usize>()
-            && voxels.len() % BRICK_VOXELS == 0
+            && voxels.len().is_multiple_of(BRICK_VOXELS)
             && index.iter().all(|&i| i == EMPTY || (i as usize) < bricks);
         fits.then_some(Self {
             size,

@@ -39,7 +39,7 @@ pub struct PreparedCloth {
     design: Arc<Design>,
     cloth: ClothVolume,
     seconds: Vec<(String, f64)>,
-    effects: Vec<(String, bool)>,
+    effects: SwitchedEffects,
 }
 
 impl PreparedCloth {
@@ -82,10 +82,13 @@ pub struct Pass<'p> {
     pub error: Option<f64>,
 }
 
+/// Effects by name, and whether they are simulated.
+type SwitchedEffects = Vec<(String, bool)>;
+
 /// The settings that a request makes of the defaults.
 fn settings(
     request: &StillRequest,
-) -> Result<(ClothSettings, RenderSettings, Vec<(String, bool)>), StillError> {
+) -> Result<(ClothSettings, RenderSettings, SwitchedEffects), StillError> {
     let mut cloth = ClothSettings::default();
     let mut render = RenderSettings {
         seed: request.seed,
