@@ -116,6 +116,8 @@ pub struct HairWalk<'l> {
     span: usize,
     t: f32,
     cell: [i64; 3],
+    /// The cell of the stretch last given.
+    here: [i64; 3],
     next: [f32; 3],
     delta: [f32; 3],
     ready: bool,
@@ -182,6 +184,7 @@ impl Medium for HairLayer<'_> {
             span: 0,
             t: 0.0,
             cell: [0; 3],
+            here: [0; 3],
             next: [0.0; 3],
             delta: [0.0; 3],
             ready: false,
@@ -259,6 +262,7 @@ impl MajorantWalk for HairWalk<'_> {
                 continue;
             }
             let fill = self.bound();
+            self.here = self.cell;
             let axis = if self.next[0] < self.next[1] {
                 if self.next[0] < self.next[2] { 0 } else { 2 }
             } else if self.next[1] < self.next[2] {
@@ -300,6 +304,14 @@ impl MajorantWalk for HairWalk<'_> {
         let over = point.z - layer.surface(face, point.x, point.y);
         let over = if face == 0 { over } else { -over };
         let place = Vec3::new(point.x, point.y, over + layer.patch.sink_mm) / layer.patch.voxel_mm;
+        // The stretch lies in one cell; rounding may not carry it beside it.
+        let within = |place: f32, cell: i64| {
+            let start = (cell * CELL as i64) as f32;
+            place.clamp(start, start + CELL as f32 - 1e-2)
+        };
+        let place = place
+            .with_x(within(place.x, self.here[0]))
+            .with_y(within(place.y, self.here[1]));
         let voxel = layer.patch.voxel(place);
         if voxel.fill() == 0 {
             return Voxel::EMPTY;

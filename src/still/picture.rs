@@ -13,7 +13,7 @@ use crate::design::{Design, Yarn};
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::render::{self, Both, Camera, Film, LightRig, RenderSettings, Tone, View};
+use crate::render::{self, Both, Camera, Denoise, Film, LightRig, RenderSettings, Tone, View};
 use crate::synthesis::Catalogue;
 use crate::yarn::YarnRecipe;
 
@@ -210,8 +210,22 @@ pub fn render(
         Some(time) => job.clone().with_deadline(Instant::now() + time),
         None => job.clone(),
     };
+    let denoise = effects::denoises(&request.dials);
+    // A preview is denoised only as often as that takes a small part of the time.
+    let mut denoised: Option<(Instant, Duration)> = None;
     let mut show = |film: &Film, progress: &render::Progress| {
-        let picture = tone.picture(film);
+        let due = denoised.is_none_or(|(when, cost)| when.elapsed() > 4 * cost);
+        if denoise && !due && progress.spp < settings.spp {
+            return;
+        }
+        let picture = if denoise {
+            let begun = Instant::now();
+            let picture = tone.picture_of(film, &Denoise::default().apply(film));
+            denoised = Some((Instant::now(), begun.elapsed()));
+            picture
+        } else {
+            tone.picture(film)
+        };
         let rgba: Vec<u8> = picture
             .pixels
             .iter()
@@ -268,6 +282,7 @@ pub fn render(
         report,
         film: outcome.film,
         tone,
+        denoise,
         pixels_per_mm: camera.pixels_per_mm(),
         texts,
     })
@@ -327,14 +342,20 @@ pub struct Still {
     /// Linear means, variances and features.
     pub film: Film,
     tone: Tone,
+    denoise: bool,
     pixels_per_mm: f32,
     texts: Vec<(String, String)>,
 }
 
 impl Still {
-    /// The picture as shown: sRGB with straight alpha.
+    /// The picture as shown: denoised unless the request said no, sRGB with straight alpha.
     pub fn picture(&self) -> png::Picture {
-        self.tone.picture(&self.film)
+        if self.denoise {
+            let clean = Denoise::default().apply(&self.film);
+            self.tone.picture_of(&self.film, &clean)
+        } else {
+            self.tone.picture(&self.film)
+        }
     }
 
     /// Writes `.png` or `.exr`, replacing the file in one step.
