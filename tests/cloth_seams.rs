@@ -33,10 +33,17 @@ impl Jumps {
             let width = (length / part).max(1);
             for from in (0..=length - width).step_by(width) {
                 let mean = |jumps: &[f64]| {
-                    let known: Vec<f64> = jumps[from..from + width].iter().copied().filter(|j| !j.is_nan()).collect();
-                    (2 * known.len() > width).then(|| known.iter().sum::<f64>() / known.len() as f64)
+                    let known: Vec<f64> = jumps[from..from + width]
+                        .iter()
+                        .copied()
+                        .filter(|j| !j.is_nan())
+                        .collect();
+                    (2 * known.len() > width)
+                        .then(|| known.iter().sum::<f64>() / known.len() as f64)
                 };
-                if let (Some(b), Some(x), Some(y)) = (mean(border), mean(insides[0]), mean(insides[1])) {
+                if let (Some(b), Some(x), Some(y)) =
+                    (mean(border), mean(insides[0]), mean(insides[1]))
+                {
                     self.border[i] += b * b;
                     self.inside[i] += 0.5 * (x * x + y * y);
                     self.count[i] += 1.0;
@@ -48,9 +55,17 @@ impl Jumps {
     /// ms excess signed root, by smoothing
     fn rms(&self) -> [String; 4] {
         std::array::from_fn(|i| {
-            let (b, s) = (self.border[i] / self.count[i], self.inside[i] / self.count[i]);
+            let (b, s) = (
+                self.border[i] / self.count[i],
+                self.inside[i] / self.count[i],
+            );
             let e = b - s;
-            format!("{:.2}/{:.2}:{:.2}", b.sqrt(), s.sqrt(), e.abs().sqrt() * e.signum())
+            format!(
+                "{:.2}/{:.2}:{:.2}",
+                b.sqrt(),
+                s.sqrt(),
+                e.abs().sqrt() * e.signum()
+            )
         })
     }
 }
@@ -64,7 +79,8 @@ fn jumps(cloth: &ClothVolume, ends: Range<i64>, picks: Range<i64>, face: Face) -
     };
     let height = |end: i64, pick: i64, x: usize, y: usize| {
         let x = cloth.ends().start(end) + (x as f64 + 0.5) / bx as f64 * cloth.ends().pitch(end);
-        let y = cloth.picks().start(pick) + (y as f64 + 0.5) / by as f64 * cloth.picks().pitch(pick);
+        let y =
+            cloth.picks().start(pick) + (y as f64 + 0.5) / by as f64 * cloth.picks().pitch(pick);
         surface(cloth, x as f32, y as f32, face).map(|hit| f64::from(hit.0))
     };
     ends.into_par_iter()
@@ -73,11 +89,10 @@ fn jumps(cloth: &ClothVolume, ends: Range<i64>, picks: Range<i64>, face: Face) -
             for pick in picks.clone() {
                 for side in [Side::Right, Side::Above] {
                     let (dx, dy) = side.offset();
-                    let joined = cloth.edge_fix().continues(
-                        at(end, pick),
-                        side,
-                        at(end + dx, pick + dy),
-                    );
+                    let joined =
+                        cloth
+                            .edge_fix()
+                            .continues(at(end, pick), side, at(end + dx, pick + dy));
                     let length = if side == Side::Right { by } else { bx };
                     let mut j = [const { Vec::new() }; 3];
                     // Corners belong to four blocks.
@@ -97,7 +112,10 @@ fn jumps(cloth: &ClothVolume, ends: Range<i64>, picks: Range<i64>, face: Face) -
                             ],
                         };
                         for i in 0..3 {
-                            j[i].push(match (heights[i], heights[i + 1]) { (Some(a), Some(b)) => b - a, _ => f64::NAN });
+                            j[i].push(match (heights[i], heights[i + 1]) {
+                                (Some(a), Some(b)) => b - a,
+                                _ => f64::NAN,
+                            });
                         }
                     }
                     sums[usize::from(joined)].add(&j[1], [&j[0], &j[2]]);
@@ -122,17 +140,39 @@ fn explore() {
     let design = preset("wavy-twill");
     let level: u32 = std::env::var("LEVEL").map_or(1, |v| v.parse().unwrap());
     let n: i64 = std::env::var("N").map_or(24, |v| v.parse().unwrap());
-    for rank in [Rank::Off, Rank::Truncated(1),Rank::Truncated(5), Rank::Truncated(15), Rank::Exact] {
+    for rank in [
+        Rank::Off,
+        Rank::Truncated(1),
+        Rank::Truncated(5),
+        Rank::Truncated(15),
+        Rank::Exact,
+    ] {
         let begun = std::time::Instant::now();
         let cloth = weave(&design, with_rank(level, rank)).with_window(0.0..12.0, 0.0..12.0);
         let made = begun.elapsed().as_secs_f32();
         let placement = cloth.placement();
         let heights: Vec<_> = cloth.sets().iter().map(|s| s.heights.clone()).collect();
-        let own = placement.seam_rms(cloth.edge_fix(), &heights, |e,p| cloth.set_at(e,p), &pickglass::job::Job::new()).unwrap();
-        println!("{rank:?} block {:?} made {made} own {own:?}", cloth.sets()[0].grid);
+        let own = placement
+            .seam_rms(
+                cloth.edge_fix(),
+                &heights,
+                |e, p| cloth.set_at(e, p),
+                &pickglass::job::Job::new(),
+            )
+            .unwrap();
+        println!(
+            "{rank:?} block {:?} made {made} own {own:?}",
+            cloth.sets()[0].grid
+        );
         for face in Face::ALL {
             let j = jumps(&cloth, 10..10 + n, 20..20 + n, face);
-            println!("   {face:?} seams {:?} joined {:?} n {} {}", j[0].rms(), j[1].rms(), j[0].count[0], j[1].count[0]);
+            println!(
+                "   {face:?} seams {:?} joined {:?} n {} {}",
+                j[0].rms(),
+                j[1].rms(),
+                j[0].count[0],
+                j[1].count[0]
+            );
         }
         println!("   {:.1} s", begun.elapsed().as_secs_f32());
     }

@@ -50,7 +50,8 @@ pub struct YarnRecipe {
     pub float_aspect: f32,
     /// How far the middle of a float rises, in yarn radii.
     pub float_bulge: f32,
-    /// Flyaway hairs a mm of yarn.
+    /// Flyaway hairs a mm of yarn: those that stand clear of it. Hairiness meters count
+    /// several times as many, most of them loops and ends that hug the yarn.
     pub hairs_per_mm: f32,
     /// Shortest and longest hair, mm.
     pub hair_length_mm: [f32; 2],
@@ -76,7 +77,7 @@ impl YarnRecipe {
                 crossing_aspect: 1.45,
                 float_aspect: 1.3,
                 float_bulge: 0.22,
-                hairs_per_mm: 5.0,
+                hairs_per_mm: 1.6,
                 hair_length_mm: [0.25, 1.6],
             },
             Family::Silk => Self {
@@ -112,8 +113,8 @@ impl YarnRecipe {
                 crossing_aspect: 1.4,
                 float_aspect: 1.25,
                 float_bulge: 0.25,
-                hairs_per_mm: 11.0,
-                hair_length_mm: [0.8, 4.0],
+                hairs_per_mm: 2.6,
+                hair_length_mm: [0.5, 3.0],
             },
             Family::Linen => Self {
                 family,
@@ -130,7 +131,7 @@ impl YarnRecipe {
                 crossing_aspect: 1.5,
                 float_aspect: 1.35,
                 float_bulge: 0.15,
-                hairs_per_mm: 3.0,
+                hairs_per_mm: 1.0,
                 hair_length_mm: [0.4, 1.8],
             },
         };

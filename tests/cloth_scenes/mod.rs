@@ -100,8 +100,7 @@ pub fn weave(design: &Design, settings: ClothSettings) -> ClothVolume {
 pub fn weave_from(design: &Design, catalogue: Catalogue, settings: ClothSettings) -> ClothVolume {
     let job = Job::new();
     let catalogue = Arc::new(catalogue);
-    let (assignment, needed) =
-        ClothVolume::assign(design, &catalogue, &settings, &job).unwrap();
+    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, &job).unwrap();
     let classes = YarnClasses::new(design);
     let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).unwrap();
     let sets = (classes.pairs.iter())
