@@ -23,7 +23,7 @@ fn oblique() -> [Vec3; 6] {
 /// ∫ f(m) dm over the sphere with polar axis `axis`, fine near its equator, where D of a
 /// smooth fibre lives.
 fn over_sphere(axis: Vec3, mut f: impl FnMut(Vec3) -> f64) -> f64 {
-    let axis = axis.as_dvec3().normalize_or(Vec3::Z);
+    let axis = axis.as_dvec3().normalize_or(DVec3::Z);
     let (a, b) = axis.any_orthonormal_pair();
     let (polar, round) = (2001, 180);
     let mut sum = 0.0;

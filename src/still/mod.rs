@@ -1,6 +1,6 @@
 //! Stills: from a design and a request to a picture, for the command line and the window.
 //!
-//! [`prepare`] makes the cloth (exemplars, synthesis, colours), [`render`] traces it pass
+//! [`prepare`] makes the cloth (exemplars, synthesis, colours), [`render()`] traces it pass
 //! by pass and calls back after each, and [`Still::save`] writes the result. Both the
 //! command line and the window are consumers of the same passes.
 

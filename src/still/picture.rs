@@ -308,7 +308,7 @@ fn in_view(camera: &Camera, view: View) -> (std::ops::Range<f32>, std::ops::Rang
 /// Prepares and renders in one go, with the user's exemplar store.
 ///
 /// # Errors
-/// As [`prepare`] and [`render`].
+/// As [`prepare`] and [`render()`].
 pub fn render_still(
     design: &Arc<Design>,
     request: &StillRequest,
