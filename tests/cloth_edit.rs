@@ -51,7 +51,8 @@ fn an_edit_is_building_anew() {
         let edited = turned(&pattern, cells);
         // Woven first, so that its exemplars are there for both.
         let anew = weave(&cotton(edited.clone()), at_level(2));
-        let mut cloth = weave(&cotton(pattern.clone()), at_level(2)).with_window(0.0..9.0, 0.0..9.0);
+        let mut cloth =
+            weave(&cotton(pattern.clone()), at_level(2)).with_window(0.0..9.0, 0.0..9.0);
         cloth.edit(&edited, cells, &Job::new()).unwrap();
         assert!(blocks(&cloth) == blocks(&anew), "{cells:?}");
         assert!(voxels(&cloth) == voxels(&anew), "{cells:?}");
@@ -67,6 +68,10 @@ fn an_edit_is_building_anew() {
 fn a_weave_of_another_size_is_refused() {
     let mut cloth = weave(&cotton(wavy_twill(96, 96)), at_level(2));
     let before = blocks(&cloth);
-    assert!(cloth.edit(&wavy_twill(95, 96), &[(0, 0)], &Job::new()).is_err());
+    assert!(
+        cloth
+            .edit(&wavy_twill(95, 96), &[(0, 0)], &Job::new())
+            .is_err()
+    );
     assert!(blocks(&cloth) == before);
 }

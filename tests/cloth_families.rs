@@ -37,7 +37,9 @@ fn wrong(cloth: &ClothVolume, design: &Design, size: i64) -> usize {
     let mut wrong = 0;
     for pick in -size..size {
         for end in -size..size {
-            let place = design.lattice().wrap(end, pick, weave.ends(), weave.picks());
+            let place = design
+                .lattice()
+                .wrap(end, pick, weave.ends(), weave.picks());
             let (i, j) = place.unwrap();
             for face in Face::ALL {
                 let YarnId(yarn) = if weave.get(i, j) == (face == Face::Front) {
@@ -60,8 +62,14 @@ fn each_pair_of_yarns_has_its_own_exemplars() {
     let cloth = weave(&design, at_level(2));
     assert_eq!(cloth.sets().len(), 2);
     let [wool, silk] = [0, 1].map(|set| cloth.sets()[set].pair.clone());
-    assert_eq!((wool.warp.family, wool.weft.family), (Family::Cotton, Family::Wool));
-    assert_eq!((silk.warp.family, silk.weft.family), (Family::Cotton, Family::Silk));
+    assert_eq!(
+        (wool.warp.family, wool.weft.family),
+        (Family::Cotton, Family::Wool)
+    );
+    assert_eq!(
+        (silk.warp.family, silk.weft.family),
+        (Family::Cotton, Family::Silk)
+    );
     assert_eq!(cloth.sets()[0].grid, cloth.sets()[1].grid);
     for pick in -7..12 {
         for end in -7..12 {
@@ -82,7 +90,10 @@ fn each_crossing_shows_its_own_yarn() {
         vec![YarnId(0), YarnId(0), YarnId(1)],
         vec![YarnId(3), YarnId(3), YarnId(2), YarnId(3), YarnId(2)],
     );
-    let other = design.clone().with_yarns(design.yarns().to_vec(), maps).unwrap();
+    let other = design
+        .clone()
+        .with_yarns(design.yarns().to_vec(), maps)
+        .unwrap();
     assert!(wrong(&cloth, &other, 15) > 200);
     let classes = YarnClasses::new(&design);
     assert_eq!(classes.pairs.len(), 2);

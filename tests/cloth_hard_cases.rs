@@ -6,7 +6,9 @@ mod cloth_scenes;
 use cloth_scenes::{at_level, cotton, two_yarns, weave, weave_from, woven};
 use glam::Vec3;
 use pickglass::cloth::{ClothVolume, YarnClasses};
-use pickglass::design::{Design, Family, Sett, WeavePattern, Yarn, YarnId, YarnMaps, weave as notation};
+use pickglass::design::{
+    Design, Family, Sett, WeavePattern, Yarn, YarnId, YarnMaps, weave as notation,
+};
 use pickglass::job::Job;
 use pickglass::render::{LightRig, Random, RenderSettings, View, render};
 use pickglass::synthesis::Catalogue;
@@ -31,15 +33,28 @@ fn look(name: &str, cloth: &ClothVolume) -> f32 {
             spp: 4,
             ..RenderSettings::default()
         };
-        let outcome =
-            render(cloth, &camera, &lights, &settings, &Job::new(), &mut |_, _| {}).unwrap();
+        let outcome = render(
+            cloth,
+            &camera,
+            &lights,
+            &settings,
+            &Job::new(),
+            &mut |_, _| {},
+        )
+        .unwrap();
         let counters = outcome.counters;
         assert_eq!(counters.majorant_violations, 0, "{name} {view:?}");
         assert_eq!(counters.invalid_samples, 0, "{name} {view:?}");
         assert_eq!(counters.invalid_rays, 0, "{name} {view:?}");
         let pixels = outcome.film.pixels();
-        assert!(pixels.iter().all(|pixel| pixel.mean().is_finite()), "{name}");
-        assert!(pixels.iter().all(|pixel| pixel.mean().min_element() >= 0.0), "{name}");
+        assert!(
+            pixels.iter().all(|pixel| pixel.mean().is_finite()),
+            "{name}"
+        );
+        assert!(
+            pixels.iter().all(|pixel| pixel.mean().min_element() >= 0.0),
+            "{name}"
+        );
         if view == View::Face {
             covered = pixels.iter().map(|pixel| pixel.alpha()).sum::<f32>() / pixels.len() as f32;
         }
@@ -90,14 +105,22 @@ fn of_size(diameter: f32, sett: Sett) -> Design {
 #[test]
 fn yarns_thicker_than_their_spacing() {
     expect_covered("twice", &of_size(0.6, Sett::per_cm(34.0, 32.0)), 0.9..=1.0);
-    expect_covered("5 times", &of_size(1.5, Sett::per_cm(34.0, 32.0)), 0.9..=1.0);
+    expect_covered(
+        "5 times",
+        &of_size(1.5, Sett::per_cm(34.0, 32.0)),
+        0.9..=1.0,
+    );
 }
 
 #[test]
 fn setts_from_fishing_net_to_membrane() {
     expect_covered("net", &of_size(0.2, Sett::per_cm(0.6, 0.6)), 0.0..=0.3);
     expect_covered("uneven", &of_size(0.2, Sett::per_cm(60.0, 8.0)), 0.5..=1.0);
-    expect_covered("fine", &of_size(0.025, Sett::per_cm(340.0, 320.0)), 0.5..=1.0);
+    expect_covered(
+        "fine",
+        &of_size(0.025, Sett::per_cm(340.0, 320.0)),
+        0.5..=1.0,
+    );
 }
 
 #[test]

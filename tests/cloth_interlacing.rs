@@ -14,7 +14,12 @@ use pickglass::synthesis::Face;
 use rayon::prelude::*;
 
 /// Crossings at whose centre another yarn is seen than the drawdown says.
-fn wrong(cloth: &ClothVolume, design: &Design, weave: &WeavePattern, face: Face) -> Vec<(u32, u32)> {
+fn wrong(
+    cloth: &ClothVolume,
+    design: &Design,
+    weave: &WeavePattern,
+    face: Face,
+) -> Vec<(u32, u32)> {
     let crossings: Vec<(u32, u32)> = (0..weave.picks())
         .flat_map(|pick| (0..weave.ends()).map(move |end| (end, pick)))
         .collect();
@@ -42,7 +47,11 @@ fn expect_drawdown(design: &Design, level: u32) {
     let crossings = u64::from(pattern.ends()) * u64::from(pattern.picks());
     for face in Face::ALL {
         let wrong = wrong(&cloth, design, &pattern, face);
-        println!("{} {face:?}: {} of {crossings} wrong", design.name, wrong.len());
+        println!(
+            "{} {face:?}: {} of {crossings} wrong",
+            design.name,
+            wrong.len()
+        );
         assert!(
             wrong.is_empty(),
             "{} {face:?}: {} of {crossings} crossings, first {:?}",
@@ -98,7 +107,11 @@ fn an_overshot_shows_its_drawdown() {
     let path = folder.join("warptracker/Overshot_Honeysuckle.wif");
     let Ok(bytes) = std::fs::read(&path) else {
         let required = std::env::var("GOLDEN_REQUIRED").is_ok_and(|value| value == "1");
-        assert!(!required, "no draft {}: set PICKGLASS_DRAFTS", path.display());
+        assert!(
+            !required,
+            "no draft {}: set PICKGLASS_DRAFTS",
+            path.display()
+        );
         eprintln!("not run: no draft {}", path.display());
         return;
     };

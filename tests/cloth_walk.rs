@@ -83,7 +83,15 @@ fn picture(cloth: &ClothVolume, view: View) -> RenderOutcome {
         spp: 4,
         ..RenderSettings::default()
     };
-    render(cloth, &camera, &lights, &settings, &Job::new(), &mut |_, _| {}).unwrap()
+    render(
+        cloth,
+        &camera,
+        &lights,
+        &settings,
+        &Job::new(),
+        &mut |_, _| {},
+    )
+    .unwrap()
 }
 
 #[test]
@@ -120,7 +128,10 @@ fn beyond_a_panel_there_is_nothing() {
     let pattern = WeavePattern::from_fn(8, 8, |end, pick| (end + pick) % 2 == 0);
     let cloth = weave(&cotton(pattern).with_lattice(none).unwrap(), at_level(2));
     let bounds = Medium::bounds(&cloth);
-    let (width, height) = (cloth.ends().repeat_mm() as f32, cloth.picks().repeat_mm() as f32);
+    let (width, height) = (
+        cloth.ends().repeat_mm() as f32,
+        cloth.picks().repeat_mm() as f32,
+    );
     assert_eq!((bounds.max.x, bounds.max.y), (width, height));
     let mut counters = Counters::default();
     let hits = |x: f32, y: f32, counters: &mut Counters| {
@@ -147,7 +158,10 @@ fn beyond_a_panel_there_is_nothing() {
             }
         }
     }
-    let inside = (cloth.ends().centre(3) as f32, cloth.picks().centre(3) as f32);
+    let inside = (
+        cloth.ends().centre(3) as f32,
+        cloth.picks().centre(3) as f32,
+    );
     assert!(hits(inside.0, inside.1, &mut counters) > 28);
 
     // The picture shows the background there, exactly, and cloth in its middle.
@@ -160,9 +174,16 @@ fn beyond_a_panel_there_is_nothing() {
     let target = Vec3::new(0.5 * width, 0.5 * height, 0.0);
     let camera = View::Face.camera(target, 2.0 * width, 32, 32);
     let lights = LightRig::preset("day").unwrap();
-    let film = render(&cloth, &camera, &lights, &settings, &Job::new(), &mut |_, _| {})
-        .unwrap()
-        .film;
+    let film = render(
+        &cloth,
+        &camera,
+        &lights,
+        &settings,
+        &Job::new(),
+        &mut |_, _| {},
+    )
+    .unwrap()
+    .film;
     for y in 0..32 {
         for x in 0..32 {
             let outside = !(8..24).contains(&x) || !(7..25).contains(&y);
