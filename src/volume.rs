@@ -1,8 +1,9 @@
 //! Dense voxel grids that can be traced: nearest or stochastic one-tap lookup, majorant
 //! bricks of 4³ voxels with a level of empty-space blocks (16³ voxels) above.
 //!
-//! Voxels are stored brick by brick, 16 bytes each (extinction, two components of the
-//! direction, optics), so that a short flight touches one or two kilobytes.
+//! Voxels are stored brick by brick, 8 bytes each (extinction as a share of the brick's
+//! largest, two components of the direction, optics), so that a short flight touches half
+//! a kilobyte; bricks without matter are not stored.
 
 use glam::{IVec3, Mat3, UVec3, Vec3};
 
@@ -80,27 +81,34 @@ pub enum VolumeError {
     /// Bounds without volume.
     #[error("volume bounds {0:?}..{1:?} must be finite and ascend on every axis")]
     Bounds(Vec3, Vec3),
+    /// More optics than a voxel can name.
+    #[error("a volume of {0} optics: merge colours until there are at most 32767")]
+    TooManyOptics(usize),
     /// No optics at all.
     #[error("a volume needs at least one entry of optics")]
     NoOptics,
 }
 
-/// One stored voxel: 16 bytes.
+/// One stored voxel: 8 bytes.
 #[derive(Debug, Clone, Copy)]
 struct Packed {
-    sigma: f32,
-    /// x and y of the direction; z is the positive root.
-    x: f32,
-    y: f32,
-    optics: u32,
+    /// In units of the brick's scale; 0 = empty.
+    sigma: u16,
+    /// x and y of the direction in units of 1/32767; z is the positive root.
+    x: i16,
+    y: i16,
+    optics: u16,
 }
 
 const EMPTY: Packed = Packed {
-    sigma: 0.0,
-    x: 0.0,
-    y: 0.0,
+    sigma: 0,
+    x: 0,
+    y: 0,
     optics: 0,
 };
+
+/// Where a brick's voxels would begin if it had any matter.
+const NOT_STORED: u32 = u32::MAX;
 
 /// A dense grid of fibre voxels in an axis-aligned box.
 #[derive(Debug, Clone)]
@@ -108,10 +116,14 @@ pub struct DenseGrid {
     size: IVec3,
     bounds: Bounds,
     taps: Taps,
-    /// Brick-major voxels; bricks and the voxels in them run x fastest.
-    voxels: Vec<Packed>,
+    /// Voxels of the bricks with matter, one brick after the other, x fastest in each.
+    voxels: Vec<[Packed; BRICK_VOXELS]>,
     optics: Vec<Optics>,
     bricks: IVec3,
+    /// Where each brick is in `voxels`, or [`NOT_STORED`].
+    places: Vec<u32>,
+    /// Extinction of one unit in each brick.
+    scales: Vec<f32>,
     majorants: Vec<f32>,
     blocks: IVec3,
     /// Whether any brick of the block has matter.
@@ -134,8 +146,8 @@ impl DenseGrid {
         if size.min_element() == 0 {
             return Err(VolumeError::Empty(nx, ny, nz));
         }
-        let cells = u128::from(nx) * u128::from(ny) * u128::from(nz);
-        if size.max_element() > 1 << 20 || cells > 1 << 34 {
+        let count = u128::from(nx) * u128::from(ny) * u128::from(nz);
+        if size.max_element() > 1 << 20 || count > 1 << 34 {
             return Err(VolumeError::TooLarge(nx, ny, nz));
         }
         let extent = bounds.max - bounds.min;
@@ -144,6 +156,9 @@ impl DenseGrid {
         }
         if optics.is_empty() {
             return Err(VolumeError::NoOptics);
+        }
+        if optics.len() > usize::from(u16::MAX) / 2 {
+            return Err(VolumeError::TooManyOptics(optics.len()));
         }
         let mut mended = Mended::default();
         let mut optics: Vec<Optics> = optics
@@ -157,16 +172,33 @@ impl DenseGrid {
 
         let size = size.as_ivec3();
         let bricks = (size + BRICK - 1) / BRICK;
-        let brick_count = bricks.x as usize * bricks.y as usize * bricks.z as usize;
-        let mut voxels = vec![EMPTY; brick_count * BRICK_VOXELS];
-        for z in 0..nz {
-            for y in 0..ny {
-                for x in 0..nx {
-                    let cell = UVec3::new(x, y, z);
-                    let packed = pack(voxel(cell), isotropic, &mut mended);
-                    voxels[voxel_index(bricks, cell.as_ivec3())] = packed;
+        let mut voxels = Vec::new();
+        let (mut places, mut scales) = (Vec::new(), Vec::new());
+        for brick in cells(bricks) {
+            let low = brick * BRICK;
+            let mut cell_of = |inside: IVec3| {
+                let cell = low + inside;
+                if cell.cmplt(size).all() {
+                    mend(voxel(cell.as_uvec3()), isotropic, &mut mended)
+                } else {
+                    GridVoxel::EMPTY
                 }
-            }
+            };
+            let given: Vec<GridVoxel> = cells(IVec3::splat(BRICK)).map(&mut cell_of).collect();
+            let largest = given.iter().fold(0.0, |top: f32, v| top.max(v.sigma));
+            let scale = largest / f32::from(u16::MAX);
+            let place = if scale > 0.0 {
+                let mut packed = [EMPTY; BRICK_VOXELS];
+                for (packed, voxel) in packed.iter_mut().zip(&given) {
+                    *packed = pack(voxel, scale);
+                }
+                voxels.push(packed);
+                voxels.len() as u32 - 1
+            } else {
+                NOT_STORED
+            };
+            places.push(place);
+            scales.push(scale);
         }
         let blocks = (bricks + BLOCK - 1) / BLOCK;
         let mut grid = Self {
@@ -176,6 +208,8 @@ impl DenseGrid {
             voxels,
             optics,
             bricks,
+            places,
+            scales,
             majorants: Vec::new(),
             blocks,
             occupied: Vec::new(),
@@ -198,7 +232,20 @@ impl DenseGrid {
 
     /// The voxel of a cell, which must lie inside.
     pub fn cell(&self, cell: UVec3) -> Voxel {
-        self.unpack(self.voxels[voxel_index(self.bricks, cell.as_ivec3())])
+        self.at(cell.as_ivec3())
+    }
+
+    #[inline]
+    fn at(&self, cell: IVec3) -> Voxel {
+        let brick = index(self.bricks, cell >> 2);
+        let inside = cell & 3;
+        match self.voxels.get(self.places[brick] as usize) {
+            Some(voxels) => {
+                let number = ((inside.z << 4) | (inside.y << 2) | inside.x) as usize;
+                self.unpack(voxels[number % BRICK_VOXELS], self.scales[brick])
+            }
+            None => Voxel::EMPTY,
+        }
     }
 
     /// The colour and gloss of an optics id.
@@ -208,9 +255,9 @@ impl DenseGrid {
 
     fn build_majorants(&mut self) {
         let largest: Vec<f32> = self
-            .voxels
-            .chunks_exact(BRICK_VOXELS)
-            .map(|brick| brick.iter().fold(0.0, |top: f32, v| top.max(v.sigma)))
+            .scales
+            .iter()
+            .map(|scale| scale * f32::from(u16::MAX))
             .collect();
         let brick_index = |b: IVec3| index(self.bricks, b);
         self.majorants = match self.taps {
@@ -233,18 +280,19 @@ impl DenseGrid {
             .collect();
     }
 
-    #[inline]
-    fn unpack(&self, packed: Packed) -> Voxel {
-        if packed.sigma > 0.0 {
-            let z2 = 1.0 - packed.x * packed.x - packed.y * packed.y;
-            Voxel {
-                sigma: packed.sigma,
-                direction: Vec3::new(packed.x, packed.y, z2.max(0.0).sqrt()),
-                alpha: self.optics[packed.optics as usize].alpha,
-                optics: packed.optics,
-            }
-        } else {
-            Voxel::EMPTY
+    #[inline(always)]
+    fn unpack(&self, packed: Packed, scale: f32) -> Voxel {
+        if packed.sigma == 0 {
+            return Voxel::EMPTY;
+        }
+        let x = f32::from(packed.x) * (1.0 / 32767.0);
+        let y = f32::from(packed.y) * (1.0 / 32767.0);
+        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
+        Voxel {
+            sigma: f32::from(packed.sigma) * scale,
+            direction: Vec3::new(x, y, z),
+            alpha: self.optics[usize::from(packed.optics)].alpha,
+            optics: u32::from(packed.optics),
         }
     }
 }
@@ -270,13 +318,14 @@ fn mend_optics(optics: Optics, mended: &mut Mended) -> Optics {
     result
 }
 
-fn pack(voxel: GridVoxel, isotropic: u32, mended: &mut Mended) -> Packed {
+/// The voxel with sound numbers, unit direction and optics in the table.
+fn mend(voxel: GridVoxel, isotropic: u32, mended: &mut Mended) -> GridVoxel {
     if !(voxel.sigma.is_finite() && voxel.sigma >= 0.0) {
         mended.extinctions += 1;
-        return EMPTY;
+        return GridVoxel::EMPTY;
     }
     if voxel.sigma == 0.0 {
-        return EMPTY;
+        return GridVoxel::EMPTY;
     }
     let mut optics = voxel.optics;
     if optics >= isotropic {
@@ -291,29 +340,34 @@ fn pack(voxel: GridVoxel, isotropic: u32, mended: &mut Mended) -> Packed {
             Vec3::Z
         }
     };
-    let direction = if direction.z < 0.0 {
-        -direction
+    GridVoxel {
+        sigma: voxel.sigma,
+        direction,
+        optics,
+    }
+}
+
+/// A mended voxel in 8 bytes. What has matter keeps some.
+fn pack(voxel: &GridVoxel, scale: f32) -> Packed {
+    if voxel.sigma <= 0.0 {
+        return EMPTY;
+    }
+    let upper = if voxel.direction.z < 0.0 {
+        -voxel.direction
     } else {
-        direction
+        voxel.direction
     };
     Packed {
-        sigma: voxel.sigma,
-        x: direction.x,
-        y: direction.y,
-        optics,
+        sigma: (voxel.sigma / scale).round().max(1.0) as u16,
+        x: (upper.x * 32767.0).round() as i16,
+        y: (upper.y * 32767.0).round() as i16,
+        optics: voxel.optics as u16,
     }
 }
 
 #[inline]
 fn index(size: IVec3, cell: IVec3) -> usize {
     ((cell.z as usize * size.y as usize) + cell.y as usize) * size.x as usize + cell.x as usize
-}
-
-#[inline]
-fn voxel_index(bricks: IVec3, cell: IVec3) -> usize {
-    let brick = index(bricks, cell >> 2);
-    let inside = cell & 3;
-    brick * BRICK_VOXELS + ((inside.z << 4) | (inside.y << 2) | inside.x) as usize
 }
 
 /// All cells of a grid, x fastest.
@@ -362,9 +416,11 @@ pub struct GridWalk<'g> {
     far: IVec3,
     /// The brick to be visited next.
     next: IVec3,
-    /// The brick of the current stretch, and where its voxels begin.
-    brick: IVec3,
-    first_voxel: usize,
+    /// The first voxel of the current stretch's brick, where its voxels are stored, and
+    /// their scale.
+    low: IVec3,
+    place: u32,
+    scale: f32,
     t: f32,
     end: f32,
 }
@@ -402,8 +458,9 @@ impl<'g> GridWalk<'g> {
             bias,
             far,
             next: brick,
-            brick,
-            first_voxel: 0,
+            low: IVec3::ZERO,
+            place: NOT_STORED,
+            scale: 0.0,
             t: start,
             end: if inside { end } else { f32::NEG_INFINITY },
         }
@@ -424,6 +481,15 @@ impl<'g> GridWalk<'g> {
         } else {
             (planes.z, 2)
         }
+    }
+
+    /// Goes on to the next brick along an axis.
+    #[inline(always)]
+    fn advance(&mut self, axis: usize) {
+        let step = |k: usize, far: i32| if k == axis { 2 * far - 1 } else { 0 };
+        self.next.x += step(0, self.far.x);
+        self.next.y += step(1, self.far.y);
+        self.next.z += step(2, self.far.z);
     }
 
     /// The first brick behind an empty block; only ever onwards along the ray.
@@ -457,12 +523,13 @@ impl MajorantWalk for GridWalk<'_> {
             let number = index(self.grid.bricks, brick);
             let majorant = self.grid.majorants[number];
             if majorant > 0.0 {
-                self.first_voxel = number * BRICK_VOXELS;
+                self.place = self.grid.places[number];
+                self.scale = self.grid.scales[number];
                 let (exit, axis) = self.exit(brick, BRICK);
                 let start = self.t;
                 let end = exit.max(start).min(self.end);
-                self.brick = brick;
-                self.next[axis] += 2 * self.far[axis] - 1;
+                self.low = brick * BRICK;
+                self.advance(axis);
                 self.t = exit.max(start);
                 return Some(Stretch {
                     start,
@@ -473,7 +540,7 @@ impl MajorantWalk for GridWalk<'_> {
             let block = brick >> 2;
             if self.grid.occupied[index(self.grid.blocks, block)] {
                 let (exit, axis) = self.exit(brick, BRICK);
-                self.next[axis] += 2 * self.far[axis] - 1;
+                self.advance(axis);
                 self.t = exit.max(self.t);
             } else {
                 let (exit, axis) = self.exit(block, BRICK * BLOCK);
@@ -489,21 +556,24 @@ impl MajorantWalk for GridWalk<'_> {
         let point = self.origin + self.direction * t;
         let grid = self.grid;
         // Rounding may put the point just outside its brick, whose majorant holds here.
-        let low = self.brick * BRICK;
-        let number = match grid.taps {
+        let low = self.low;
+        match grid.taps {
             Taps::Nearest => {
                 let inside = |axis: usize| (floor(point[axis]) - low[axis]).clamp(0, BRICK - 1);
-                self.first_voxel + ((inside(2) << 4) | (inside(1) << 2) | inside(0)) as usize
+                let number = ((inside(2) << 4) | (inside(1) << 2) | inside(0)) as usize;
+                match grid.voxels.get(self.place as usize) {
+                    Some(voxels) => grid.unpack(voxels[number % BRICK_VOXELS], self.scale),
+                    None => Voxel::EMPTY,
+                }
             }
             Taps::StochasticTrilinear => {
                 let shifted = point + tap - 0.5;
                 let cell = IVec3::new(floor(shifted.x), floor(shifted.y), floor(shifted.z))
                     .clamp(low - 1, low + BRICK)
                     .clamp(IVec3::ZERO, grid.size - 1);
-                voxel_index(grid.bricks, cell)
+                grid.at(cell)
             }
-        };
-        grid.unpack(grid.voxels[number])
+        }
     }
 }
 

@@ -322,6 +322,13 @@ impl ClothVolume {
             .set(self.maps.warp(end, pick), self.maps.weft(end, pick))
     }
 
+    /// Whether the warp is on the face at a crossing; `None` where there is no cloth.
+    #[inline]
+    pub fn warp_up(&self, end: i64, pick: i64) -> Option<bool> {
+        let block = self.assignment.at(end, pick)?;
+        Some(self.catalogue.key(block) & 1 == 1)
+    }
+
     /// Where the ends lie.
     pub fn ends(&self) -> &Positions {
         &self.ends

@@ -15,7 +15,7 @@ use super::build::ClothVolume;
 use crate::design::{Family, Yarn};
 use crate::job::{Cancelled, Job};
 use crate::render::path::{ByOrder, Path, Plane};
-use crate::render::{Counters, Dark, Random, Ray, Stack, Sun};
+use crate::render::{Counters, Dark, Random, Ray, RenderSettings, Stack, Sun};
 
 /// Nodes of a stored curve, equally spaced in s = √(1−ω) from 0 to 1: R is smooth in s.
 pub const NODES: usize = 25;
@@ -23,6 +23,13 @@ pub const NODES: usize = 25;
 const ORDERS: usize = 2048;
 /// Directions of the light round the cloth.
 const AZIMUTHS: usize = 8;
+/// Starts of paths along a side of the square that one task follows.
+const ROW: u32 = 8;
+/// Paths that one task follows.
+const BATCH: u32 = ROW * ROW;
+/// Light below which shadow rays play roulette: about one of the lamps is asked at each
+/// scattering, and those that a fibre mirrors always.
+const SHADOW_ROULETTE: f32 = 0.3;
 
 /// Reflectance of thick plain-woven cloth against single-scattering albedo.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -83,9 +90,20 @@ impl ReflectanceCurve {
     }
 }
 
+/// A measured curve and how far noise may have moved it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// The curve.
+    pub curve: ReflectanceCurve,
+    /// Standard error of each of its nodes. The nodes share their paths, so they err
+    /// together and the curve stays smooth.
+    pub standard_error: Vec<f32>,
+}
+
 /// Measures the shares pₙ of light scattered n times and makes the curve of them.
 ///
-/// `cloth` should be plain weave of one yarn; its own colours do not matter.
+/// `cloth` should be plain weave of one yarn; its own colours do not matter. All orders
+/// come from the same `paths`, none of them negative: the curve cannot but fall with s.
 ///
 /// # Errors
 /// [`Cancelled`] when the job was.
@@ -96,67 +114,79 @@ pub fn measure(
     layers: u32,
     paths: u32,
     job: &Job,
-) -> Result<ReflectanceCurve, Cancelled> {
+) -> Result<Measured, Cancelled> {
     use rayon::prelude::*;
-    let stack = Stack::new(cloth, layers, Vec2::new(0.37, 0.23));
+    let slide = RenderSettings::default().backing_slide_mm;
+    let stack = Stack::new(cloth, layers, slide.into());
     let top = cloth.height_range().1;
     let patch = Vec2::new(cloth.ends().pitch(0) as f32, cloth.picks().pitch(0) as f32) * 24.0;
-    let batches: Vec<Vec<f64>> = (0..paths.div_ceil(256))
+    let suns = lamps();
+    // Each batch gives its own curve; their mean is the curve, their spread its error.
+    let batches: Vec<[f64; NODES]> = (0..paths.div_ceil(BATCH).max(2))
         .into_par_iter()
         .map(|batch| {
             job.check()?;
             let mut orders = ByOrder(vec![0.0; ORDERS + 1]);
             let mut counters = Counters::default();
-            for path in 0..256 {
-                let mut random = Random::new(45, u64::from(batch), path);
-                let suns = [lamp(path as usize % AZIMUTHS)];
-                let [x, y] = random.pair();
+            for path in 0..BATCH {
+                let mut random = Random::new(45, u64::from(batch), u64::from(path));
+                // The paths of a batch start in the cells of a square of their own each.
+                let cell = Vec2::new((path % ROW) as f32, (path / ROW) as f32);
+                let place = (cell + Vec2::from(random.pair())) / ROW as f32;
                 let ray = Ray {
-                    origin: (Vec2::new(x, y) * patch).extend(top + 1.0),
+                    origin: (place * patch).extend(top + 1.0),
                     direction: Vec3::NEG_Z,
                 };
-                colour_path(&stack, &suns).trace(ray, &mut orders, &mut random, &mut counters);
+                path_to(&suns, &stack).trace(ray, &mut orders, &mut random, &mut counters);
             }
-            Ok(orders.0)
+            Ok(nodes_of(&orders.0).map(|sum| sum / f64::from(BATCH)))
         })
         .collect::<Result<_, Cancelled>>()?;
-    let mut shares = vec![0.0f64; ORDERS + 1];
-    for batch in &batches {
-        for (share, light) in shares.iter_mut().zip(batch) {
-            *share += light / (256.0 * batches.len() as f64);
-        }
+    let n = batches.len() as f64;
+    let mut reflectance = Vec::with_capacity(NODES);
+    let mut standard_error = Vec::with_capacity(NODES);
+    for node in 0..NODES {
+        let mean = batches.iter().map(|batch| batch[node]).sum::<f64>() / n;
+        let squares: f64 = (batches.iter())
+            .map(|batch| (batch[node] - mean).powi(2))
+            .sum();
+        reflectance.push(mean as f32);
+        standard_error.push((squares / (n * (n - 1.0))).sqrt() as f32);
     }
-    let reflectance = (0..NODES)
-        .map(|node| {
-            let s = node as f64 / (NODES - 1) as f64;
-            let albedo = 1.0 - s * s;
-            // Horner: Σ pₙ ωⁿ.
-            shares
-                .iter()
-                .rev()
-                .fold(0.0, |sum, &share| sum * albedo + share) as f32
-        })
-        .collect();
-    Ok(ReflectanceCurve {
-        family,
-        alpha,
-        reflectance,
+    Ok(Measured {
+        curve: ReflectanceCurve {
+            family,
+            alpha,
+            reflectance,
+        },
+        standard_error,
     })
 }
 
-/// One of the lamps of the 45°/0° geometry; a white diffuser under it has radiance 1.
-pub fn lamp(azimuth: usize) -> Sun {
-    let (sine, cosine) =
-        (std::f32::consts::TAU * (azimuth as f32 + 0.5) / AZIMUTHS as f32).sin_cos();
-    let half = std::f32::consts::FRAC_1_SQRT_2;
-    Sun {
-        towards: Vec3::new(cosine * half, sine * half, half),
-        irradiance: Vec3::splat(std::f32::consts::PI / half),
-        angular_radius: 0.0,
-    }
+/// Σ pₙ ωⁿ at the nodes of a curve.
+fn nodes_of(shares: &[f64]) -> [f64; NODES] {
+    std::array::from_fn(|node| {
+        let s = node as f64 / (NODES - 1) as f64;
+        let albedo = 1.0 - s * s;
+        // Horner's rule from the highest order.
+        (shares.iter().rev()).fold(0.0, |sum, &share| sum * albedo + share)
+    })
 }
 
-fn colour_path<'a, S>(scatterer: &'a S, suns: &'a [Sun]) -> Path<'a, S, Dark, true, false> {
+/// The lamps of the 45°/0° geometry; a white diffuser under them has radiance 1.
+pub fn lamps() -> [Sun; AZIMUTHS] {
+    use std::f32::consts::{FRAC_1_SQRT_2, PI, TAU};
+    std::array::from_fn(|azimuth| {
+        let (sine, cosine) = (TAU * (azimuth as f32 + 0.5) / AZIMUTHS as f32).sin_cos();
+        Sun {
+            towards: Vec3::new(cosine, sine, 1.0) * FRAC_1_SQRT_2,
+            irradiance: Vec3::splat(PI / (FRAC_1_SQRT_2 * AZIMUTHS as f32)),
+            angular_radius: 0.0,
+        }
+    })
+}
+
+fn path_to<'a, S>(suns: &'a [Sun], scatterer: &'a S) -> Path<'a, S, Dark, true, false> {
     Path {
         scatterer,
         suns,
@@ -169,7 +199,7 @@ fn colour_path<'a, S>(scatterer: &'a S, suns: &'a [Sun]) -> Path<'a, S, Dark, tr
         },
         max_order: ORDERS as u32,
         roulette_order: u32::MAX,
-        shadow_roulette: 0.0,
+        shadow_roulette: SHADOW_ROULETTE,
         background: crate::render::Background::Transparent,
     }
 }
@@ -225,8 +255,10 @@ pub fn albedo(yarn: &Yarn) -> Vec3 {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
+    use crate::render::sggx::ALPHA_FLOOR;
 
     #[test]
     fn curves_rise_with_albedo_and_invert() {
@@ -247,11 +279,31 @@ mod tests {
     }
 
     #[test]
-    fn every_family_has_a_curve_at_every_roughness() {
-        for family in [Family::Cotton, Family::Silk, Family::Wool, Family::Linen] {
-            for alpha in [0.01, 0.08, 0.3, 1.0] {
-                assert!(curve(family, alpha).is_some());
-            }
+    fn every_family_is_measured_at_its_own_roughness_and_all_around_it() {
+        for family in Family::ALL {
+            let alphas: Vec<f32> = (curves().iter())
+                .filter(|curve| curve.family == family)
+                .map(|curve| curve.alpha)
+                .collect();
+            let own = family.numbers().alpha;
+            assert!(alphas.contains(&own), "{family:?} at {own}: {alphas:?}");
+            assert!(alphas.contains(&ALPHA_FLOOR) && alphas.contains(&1.0));
+            // Between two of them the curve lies between theirs.
+            let (low, high) = (curve(family, own), curve(family, 1.0));
+            let (low, high) = (low.unwrap(), high.unwrap());
+            let middle = curve(family, 0.5 * (own + 1.0)).unwrap();
+            assert!(middle.reflectance.len() == NODES && low != middle && middle != high);
+        }
+    }
+
+    #[test]
+    fn no_surface_share_or_colour_leads_out_of_the_albedos() {
+        let mut yarn = Yarn::new("odd", Family::Wool, crate::design::Srgb(0, 255, 7));
+        for share in [0.0, 0.05, 1.0, -3.0, 7.0, f32::INFINITY] {
+            yarn.surface_share = share;
+            let albedo = albedo(&yarn);
+            assert!(albedo.min_element() >= share.clamp(0.0, 1.0));
+            assert!(albedo.max_element() <= 1.0);
         }
     }
 }

@@ -10,9 +10,11 @@
 
 mod build;
 pub mod colour;
+mod hairs;
 mod lookup;
 mod walk;
 mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
+pub use hairs::{HairLayer, HairWalk};
 pub use walk::ClothWalk;

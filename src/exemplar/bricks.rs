@@ -118,6 +118,29 @@ impl BrickVolume {
         }
     }
 
+    /// Visits the voxels of all bricks that hold matter.
+    pub(crate) fn for_each(&self, mut visit: impl FnMut([usize; 3], PackedVoxel)) {
+        let [width, height, _] = self.size.map(|n| n / BRICK);
+        for (place, &brick) in self.index.iter().enumerate() {
+            if brick == EMPTY {
+                continue;
+            }
+            let corner = [
+                place % width,
+                place / width % height,
+                place / width / height,
+            ];
+            let voxels = &self.voxels[brick as usize * BRICK_VOXELS..][..BRICK_VOXELS];
+            for (i, &voxel) in voxels.iter().enumerate() {
+                let within = [i % BRICK, i / BRICK % BRICK, i / BRICK / BRICK];
+                visit(
+                    std::array::from_fn(|a| corner[a] * BRICK + within[a]),
+                    voxel,
+                );
+            }
+        }
+    }
+
     /// The parts that a file stores: sizes, brick index, voxels.
     pub(crate) fn parts(&self) -> ([usize; 3], &[u32], &[PackedVoxel]) {
         (self.size, &self.index, &self.voxels)
@@ -132,7 +155,7 @@ impl BrickVolume {
         let bricks = voxels.len() / BRICK_VOXELS;
         let fits = size.iter().all(|n| *n > 0 && n % BRICK == 0)
             && index.len() == size.iter().map(|n| n / BRICK).product::<usize>()
-            && voxels.len() % BRICK_VOXELS == 0
+            && voxels.len().is_multiple_of(BRICK_VOXELS)
             && index.iter().all(|&i| i == EMPTY || (i as usize) < bricks);
         fits.then_some(Self {
             size,

@@ -10,6 +10,7 @@
 
 mod bricks;
 mod direction;
+pub mod hairs;
 mod heights;
 mod majorants;
 mod set;

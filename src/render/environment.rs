@@ -124,7 +124,7 @@ impl Environment for Dome {
 }
 
 /// An equirectangular picture: row 0 is the zenith (+z), the last row the nadir, the
-/// middle column looks along −y… see [`EnvironmentImage::direction`].
+/// middle column is seen towards −y, see [`EnvironmentImage::direction`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnvironmentImage {
     width: usize,

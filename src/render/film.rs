@@ -207,7 +207,8 @@ impl Film {
         self.pixels.iter().map(Pixel::mean).collect()
     }
 
-    pub(super) fn pixels_mut(&mut self) -> &mut [Pixel] {
+    /// The pixels, to be exposed by hand.
+    pub fn pixels_mut(&mut self) -> &mut [Pixel] {
         &mut self.pixels
     }
 

@@ -180,7 +180,7 @@ impl LightRig {
                 return Err(no_light());
             }
             suns.push(Sun {
-                towards: Vec3::new(cos_e * cos_a, cos_e * sin_a, sin_e).normalize(),
+                towards: Vec3::new(cos_e * cos_a, cos_e * sin_a, sin_e).normalize_or(Vec3::Z),
                 irradiance: colour * strength,
                 angular_radius: sun.radius.to_radians().max(0.0),
             });

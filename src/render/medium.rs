@@ -102,6 +102,25 @@ pub trait Medium: Sync {
     fn albedo(&self, optics: u32) -> Vec3;
 }
 
+impl<M: Medium> Medium for &M {
+    type Walk<'m>
+        = M::Walk<'m>
+    where
+        Self: 'm;
+
+    fn bounds(&self) -> Bounds {
+        (**self).bounds()
+    }
+
+    fn walk(&self, ray: &Ray, t_max: f32) -> Self::Walk<'_> {
+        (**self).walk(ray, t_max)
+    }
+
+    fn albedo(&self, optics: u32) -> Vec3 {
+        (**self).albedo(optics)
+    }
+}
+
 /// A walk along a ray, stretch by stretch, in order of distance. Empty stretches may be
 /// skipped; the walk always ends.
 pub trait MajorantWalk {

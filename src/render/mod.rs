@@ -5,10 +5,11 @@
 //! stretch of a ray. [`track`] makes free flights and shadows of that for anything that
 //! is a [`Scatterer`]; [`path`] strings flights to paths with [`sggx`] scattering under a
 //! [`LightRig`]; [`still::render`] sums paths seen by a [`Camera`] on a [`Film`], pass by
-//! pass, with the [`error`] reached; [`tone`] makes a picture of it.
+//! pass, with the [`error`] reached; [`tone`] and [`mod@denoise`] make a picture of it.
 
 pub mod camera;
 pub mod counters;
+pub mod denoise;
 pub mod effects;
 pub mod environment;
 pub mod error;
@@ -27,6 +28,7 @@ pub mod track;
 
 pub use camera::{Camera, View};
 pub use counters::Counters;
+pub use denoise::Denoise;
 pub use environment::{Dark, Dome, Environment, EnvironmentImage, luminance};
 pub use error::{ErrorEstimate, estimate};
 pub use film::{Film, FirstHit, Pixel, Sample};

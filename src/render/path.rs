@@ -132,7 +132,7 @@ impl Vertex {
             Self::Sheet(facing) => {
                 let (x, y) = super::random::disk(u);
                 let z = (1.0 - x * x - y * y).max(1e-6).sqrt();
-                Vec3::new(x, y, z * facing).normalize()
+                Vec3::new(x, y, z * facing).normalize_or(Vec3::Z)
             }
         }
     }

@@ -84,12 +84,18 @@ impl Fibre {
     }
 
     /// A flake normal as seen from `wi`, drawn exactly from ⟨wi,m⟩D(m)/σ(wi).
+    #[inline]
+    pub fn visible_normal(&self, wi: Vec3, u: [f32; 2]) -> Vec3 {
+        self.scaled_normal(wi, u).normalize_or(wi)
+    }
+
+    /// A visible normal times some positive number.
     ///
     /// Heitz 2015's construction in the frame (k, j, wi) whose j lies in the plane of
     /// `wi` and the fibre: there S_kj = S_ki = 0 and the three vectors collapse to
-    /// M_k = k, M_j = α/σ j, M_i = −(1−α²)sc/σ j + σ wi.
-    #[inline]
-    pub fn visible_normal(&self, wi: Vec3, u: [f32; 2]) -> Vec3 {
+    /// M_k = k, M_j = α/σ j, M_i = −(1−α²)sc/σ j + σ wi, all taken times σ.
+    #[inline(always)]
+    fn scaled_normal(&self, wi: Vec3, u: [f32; 2]) -> Vec3 {
         let c = wi.dot(self.direction);
         let across = self.direction - wi * c;
         let s2 = across.length_squared();
@@ -101,18 +107,25 @@ impl Fibre {
         };
         let k = wi.cross(j);
         let a2 = self.alpha * self.alpha;
-        let area = (s2 + a2 * c * c).max(a2 * 0.25).sqrt();
+        let area2 = (s2 + a2 * c * c).max(a2 * 0.25);
         let (x, y) = disk(u);
-        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
-        let along_j = (y * self.alpha - z * (1.0 - a2) * s * c) / area;
-        (k * x + j * along_j + wi * (z * area)).normalize_or(wi)
+        let z = (1.0 - u[0]).sqrt();
+        let along_j = y * self.alpha - z * (1.0 - a2) * s * c;
+        k * (x * area2.sqrt()) + j * along_j + wi * (z * area2)
     }
 
     /// Samples the phase function: a direction `wo` of density [`Fibre::phase`], so that
-    /// its weight is exactly 1. Unit length to rounding.
-    #[inline]
+    /// its weight is exactly 1. Unit length to rounding when `wi` is.
+    #[inline(always)]
     pub fn sample(&self, wi: Vec3, u: [f32; 2]) -> Vec3 {
-        let m = self.visible_normal(wi, u);
-        (m * (2.0 * wi.dot(m)) - wi).normalize_or(-wi)
+        let m = self.scaled_normal(wi, u);
+        let length2 = m.length_squared();
+        if length2 > 0.0 {
+            let wo = m * (2.0 * wi.dot(m) / length2) - wi;
+            // One Newton step keeps rounding from growing along a path.
+            wo * (1.5 - 0.5 * wo.length_squared())
+        } else {
+            -wi
+        }
     }
 }

@@ -14,7 +14,7 @@ pub struct Effect {
 }
 
 /// The effects, in the order of the report.
-pub const EFFECTS: [Effect; 6] = [
+pub const EFFECTS: [Effect; 7] = [
     Effect {
         name: "shadows",
         about: "light is blocked on its way to a fibre",
@@ -26,6 +26,10 @@ pub const EFFECTS: [Effect; 6] = [
     Effect {
         name: "sky",
         about: "light from all round, beside the suns",
+    },
+    Effect {
+        name: "hairs",
+        about: "flyaway fibres on both faces",
     },
     Effect {
         name: "edge-fixing",
@@ -50,7 +54,11 @@ pub struct Dial {
 }
 
 /// The dials.
-pub const DIALS: [Dial; 9] = [
+pub const DIALS: [Dial; 10] = [
+    Dial {
+        name: "denoise",
+        values: "off or on",
+    },
     Dial {
         name: "method",
         values: "naive, greedy or dp",
@@ -155,6 +163,9 @@ pub(super) fn turn(
                 }
             }
             "patch" => cloth.synthesis.patch = number(0, 64)?,
+            "denoise" => {
+                switch(value).ok_or_else(wrong)?;
+            }
             "level" => cloth.level = number(0, 4)?,
             "order" => render.max_order = number(1, 4096)?,
             "roulette-order" if value == "never" => render.roulette_order = u32::MAX,
@@ -173,6 +184,20 @@ pub(super) fn turn(
     Ok(())
 }
 
+fn switch(value: &str) -> Option<bool> {
+    match value {
+        "on" => Some(true),
+        "off" => Some(false),
+        _ => None,
+    }
+}
+
+/// Whether a request wants its picture denoised for showing; it does unless it says no.
+pub(super) fn denoises(dials: &[(String, String)]) -> bool {
+    let dial = dials.iter().rev().find(|(name, _)| name == "denoise");
+    dial.and_then(|(_, value)| switch(value)).unwrap_or(true)
+}
+
 /// Leaves out the effects that a request leaves out; returns which are on.
 pub(super) fn choose(
     choice: &EffectChoice,
@@ -187,7 +212,7 @@ pub(super) fn choose(
             .ok_or_else(|| DialError::Effect(name.clone()))?;
         on[index] = *switched;
     }
-    let [shadows, multiple, sky, edge_fixing, randomisation, tap] = on;
+    let [shadows, multiple, sky, _, edge_fixing, randomisation, tap] = on;
     render.shadows &= shadows;
     render.sky &= sky;
     if !multiple {

@@ -8,13 +8,14 @@ use glam::Vec3;
 
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothError, ClothSettings, ClothVolume, YarnClasses, colour};
-use crate::design::Design;
+use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
+use crate::design::{Design, Yarn};
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::render::{self, Camera, Film, LightRig, RenderSettings, Tone, View};
+use crate::render::{self, Both, Camera, Denoise, Film, LightRig, RenderSettings, Tone, View};
 use crate::synthesis::Catalogue;
+use crate::yarn::YarnRecipe;
 
 /// Samples a pixel when a request gives no way to stop.
 const USUAL_SPP: u32 = 64;
@@ -38,10 +39,27 @@ pub struct PreparedCloth {
     design: Arc<Design>,
     cloth: ClothVolume,
     seconds: Vec<(String, f64)>,
-    effects: Vec<(String, bool)>,
+    effects: SwitchedEffects,
 }
 
 impl PreparedCloth {
+    /// Whether an effect is simulated.
+    fn on(&self, name: &str) -> bool {
+        self.effects
+            .iter()
+            .any(|(effect, on)| effect == name && *on)
+    }
+
+    /// Whether each yarn has hairs.
+    fn hairy(&self) -> Vec<bool> {
+        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
+        self.design
+            .yarns()
+            .iter()
+            .map(|yarn| hairs(yarn) >= 0.5)
+            .collect()
+    }
+
     /// The cloth.
     pub fn cloth(&self) -> &ClothVolume {
         &self.cloth
@@ -64,10 +82,13 @@ pub struct Pass<'p> {
     pub error: Option<f64>,
 }
 
+/// Effects by name, and whether they are simulated.
+type SwitchedEffects = Vec<(String, bool)>;
+
 /// The settings that a request makes of the defaults.
 fn settings(
     request: &StillRequest,
-) -> Result<(ClothSettings, RenderSettings, Vec<(String, bool)>), StillError> {
+) -> Result<(ClothSettings, RenderSettings, SwitchedEffects), StillError> {
     let mut cloth = ClothSettings::default();
     let mut render = RenderSettings {
         seed: request.seed,
@@ -189,8 +210,22 @@ pub fn render(
         Some(time) => job.clone().with_deadline(Instant::now() + time),
         None => job.clone(),
     };
+    let denoise = effects::denoises(&request.dials);
+    // A preview is denoised only as often as that takes a small part of the time.
+    let mut denoised: Option<(Instant, Duration)> = None;
     let mut show = |film: &Film, progress: &render::Progress| {
-        let picture = tone.picture(film);
+        let due = denoised.is_none_or(|(when, cost)| when.elapsed() > 4 * cost);
+        if denoise && !due && progress.spp < settings.spp {
+            return;
+        }
+        let picture = if denoise {
+            let begun = Instant::now();
+            let picture = tone.picture_of(film, &Denoise::default().apply(film));
+            denoised = Some((Instant::now(), begun.elapsed()));
+            picture
+        } else {
+            tone.picture(film)
+        };
         let rgba: Vec<u8> = picture
             .pixels
             .iter()
@@ -207,7 +242,17 @@ pub fn render(
     };
     let (x, y) = in_view(&camera, request.view);
     let cloth = prepared.cloth.clone().with_window(x, y);
-    let outcome = render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?;
+    let hairs = prepared
+        .on("hairs")
+        .then(|| HairLayer::new(&cloth, prepared.hairy()))
+        .flatten();
+    let outcome = match &hairs {
+        Some(hairs) => {
+            let both = Both(&cloth, hairs);
+            render::render(&both, &camera, &lights, &settings, &job, &mut show)?
+        }
+        None => render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?,
+    };
     let mut seconds = prepared.seconds.clone();
     seconds.push(("render".to_owned(), outcome.seconds));
     let report = StillReport {
@@ -237,6 +282,7 @@ pub fn render(
         report,
         film: outcome.film,
         tone,
+        denoise,
         pixels_per_mm: camera.pixels_per_mm(),
         texts,
     })
@@ -296,14 +342,20 @@ pub struct Still {
     /// Linear means, variances and features.
     pub film: Film,
     tone: Tone,
+    denoise: bool,
     pixels_per_mm: f32,
     texts: Vec<(String, String)>,
 }
 
 impl Still {
-    /// The picture as shown: sRGB with straight alpha.
+    /// The picture as shown: denoised unless the request said no, sRGB with straight alpha.
     pub fn picture(&self) -> png::Picture {
-        self.tone.picture(&self.film)
+        if self.denoise {
+            let clean = Denoise::default().apply(&self.film);
+            self.tone.picture_of(&self.film, &clean)
+        } else {
+            self.tone.picture(&self.film)
+        }
     }
 
     /// Writes `.png` or `.exr`, replacing the file in one step.

@@ -75,6 +75,10 @@ impl FibreLayout {
 
 /// Traces fibre number `fibre` of a yarn through `planes` equally spaced places along one
 /// repeat. Positions are in mm and not wrapped; `out` holds one point a plane.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "what is traced, where, and where to"
+)]
 pub fn trace(
     weave: &WeaveGeometry,
     recipe: &YarnRecipe,

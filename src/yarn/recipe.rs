@@ -54,8 +54,6 @@ pub struct YarnRecipe {
     pub hairs_per_mm: f32,
     /// Shortest and longest hair, mm.
     pub hair_length_mm: [f32; 2],
-    /// SGGX roughness α of its fibres.
-    pub alpha: f32,
 }
 
 impl YarnRecipe {
@@ -80,7 +78,6 @@ impl YarnRecipe {
                 float_bulge: 0.22,
                 hairs_per_mm: 5.0,
                 hair_length_mm: [0.25, 1.6],
-                alpha: 0.22,
             },
             Family::Silk => Self {
                 family,
@@ -99,7 +96,6 @@ impl YarnRecipe {
                 float_bulge: 0.3,
                 hairs_per_mm: 0.05,
                 hair_length_mm: [0.3, 1.0],
-                alpha: 0.08,
             },
             Family::Wool => Self {
                 family,
@@ -118,7 +114,6 @@ impl YarnRecipe {
                 float_bulge: 0.25,
                 hairs_per_mm: 11.0,
                 hair_length_mm: [0.8, 4.0],
-                alpha: 0.28,
             },
             Family::Linen => Self {
                 family,
@@ -137,7 +132,6 @@ impl YarnRecipe {
                 float_bulge: 0.15,
                 hairs_per_mm: 3.0,
                 hair_length_mm: [0.4, 1.8],
-                alpha: 0.18,
             },
         };
         // The families' numbers are for their usual yarns; thinner yarns are twisted more.
@@ -166,7 +160,6 @@ impl YarnRecipe {
             ("packing", self.packing),
             ("crossing aspect", self.crossing_aspect),
             ("float aspect", self.float_aspect),
-            ("roughness", self.alpha),
         ];
         for (what, value) in sizes {
             if !(value.is_finite() && value > 0.0) {

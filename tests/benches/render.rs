@@ -21,7 +21,7 @@ use render_scenes::{YarnGrid, shoot, silk_satin, wool_twill};
 
 const SIZE: u32 = 512;
 const SPP: u32 = 8;
-const REFERENCE_SPP: u32 = 96;
+const REFERENCE_SPP: u32 = 48;
 const PEER_SPP: u32 = 2;
 
 fn main() {
@@ -56,7 +56,9 @@ fn measure(name: &str, scene: &YarnGrid, quick: bool) {
     };
     let grid = scene.grid(Taps::Nearest);
     let (camera, lights) = (view.camera(), view.lights());
+    let before = cpu_seconds();
     let ours = shoot(&grid, &camera, &lights, &settings);
+    let cpu = cpu_seconds() - before;
     let counters = ours.counters;
     let per_path = |count: u64| count as f64 / counters.paths as f64;
     println!(
@@ -84,9 +86,9 @@ fn measure(name: &str, scene: &YarnGrid, quick: bool) {
     };
     let reference = shoot(&grid, &camera, &lights, &long).film;
     let mse = relative_mse(&ours.film, &reference);
-    let product = mse * ours.seconds;
+    let (product, cpu_product) = (mse * ours.seconds, mse * cpu);
     println!(
-        "  ours: {:.2} s, mse {mse:.4}, mse·s {product:.4}",
+        "  ours: {:.2} s ({cpu:.2} s of processors), mse {mse:.4}, mse·s {product:.4}",
         ours.seconds
     );
     let folder = tempfile::tempdir().expect("a folder");
@@ -94,18 +96,35 @@ fn measure(name: &str, scene: &YarnGrid, quick: bool) {
     write_film(folder.path(), "reference", &reference);
     for variant in ["scalar_rgb", "llvm_ad_rgb"] {
         match peer(&python, folder.path(), variant) {
-            Some((seconds, peer_mse, line)) => println!(
-                "  {line}\n  {variant}: mse·s {:.2}, {:.1} times ours",
-                peer_mse * seconds,
-                peer_mse * seconds / product
+            Some(peer) => println!(
+                "  {}\n  {variant}: {:.1} times our time to equal error, {:.1} times our processor time",
+                peer.line,
+                peer.mse * peer.seconds / product,
+                peer.mse * peer.cpu_seconds / cpu_product
             ),
             None => println!("  {variant}: did not run"),
         }
     }
 }
 
-/// Seconds, mean squared error and the whole report of a variant of mitsuba.
-fn peer(python: &Path, folder: &Path, variant: &str) -> Option<(f64, f64, String)> {
+/// Processor time of this process so far, seconds; meaningful beside other work, where
+/// the wall clock is not. 0 where the system does not tell.
+fn cpu_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = text.rsplit(')').next().unwrap_or_default();
+    let ticks = fields.split_whitespace().nth(11);
+    ticks.and_then(|t| t.parse::<f64>().ok()).unwrap_or(0.0) / 100.0
+}
+
+/// What a variant of mitsuba needed and reached.
+struct Peer {
+    seconds: f64,
+    cpu_seconds: f64,
+    mse: f64,
+    line: String,
+}
+
+fn peer(python: &Path, folder: &Path, variant: &str) -> Option<Peer> {
     let spp = PEER_SPP.to_string();
     let output = Command::new(python)
         .arg(script())
@@ -123,5 +142,10 @@ fn peer(python: &Path, folder: &Path, variant: &str) -> Option<(f64, f64, String
         let rest = line.split(&format!("\"{key}\": ")).nth(1)?;
         rest.split([',', '}']).next()?.trim().parse().ok()
     };
-    Some((field("seconds")?, field("mse")?, line.clone()))
+    Some(Peer {
+        seconds: field("seconds")?,
+        cpu_seconds: field("cpu_seconds")?,
+        mse: field("mse")?,
+        line: line.clone(),
+    })
 }

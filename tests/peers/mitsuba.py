@@ -148,9 +148,9 @@ def bench(folder, variant, spp):
     # Compiles the kernels, which is not counted.
     if variant.startswith("llvm"):
         np.array(mi.render(scene, seed=99, spp=spp))
-    begun = time.time()
+    begun, cpu = time.time(), time.process_time()
     image = np.array(mi.render(scene, seed=0, spp=spp)).astype(float) @ LUMINANCE
-    seconds = time.time() - begun
+    seconds, cpu = time.time() - begun, time.process_time() - cpu
     shape = (view["height"], view["width"], 3)
     reference = np.fromfile(folder / "reference-mean.f32", "<f4").reshape(shape).astype(float)
     reference = reference @ LUMINANCE
@@ -161,6 +161,7 @@ def bench(folder, variant, spp):
             {
                 "variant": variant,
                 "seconds": seconds,
+                "cpu_seconds": cpu,
                 "spp": spp,
                 "mse": error,
                 "mean": image.mean(),

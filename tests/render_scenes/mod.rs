@@ -141,7 +141,7 @@ impl YarnGrid {
         let fill = 0.55 + 0.45 * (mix(id) >> 40) as f32 / 16_777_216.0;
         GridVoxel {
             sigma: self.sigma * fill,
-            direction: direction.normalize(),
+            direction: direction.normalize_or(Vec3::Z),
             optics,
         }
     }
@@ -178,7 +178,7 @@ pub fn lone_sun(towards: Vec3, irradiance: f32) -> LightRig {
     LightRig::new(
         "lone sun",
         vec![Sun {
-            towards: towards.normalize(),
+            towards: towards.normalize_or(Vec3::Z),
             irradiance: Vec3::splat(irradiance),
             angular_radius: 0.0,
         }],

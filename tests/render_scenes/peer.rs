@@ -83,7 +83,7 @@ pub fn write_scene(
         }),
     );
     let distance = view.width_mm * 0.5 / (view.field_of_view * 0.5).to_radians().tan();
-    let eye = view.target + view.from.normalize() * distance;
+    let eye = view.target + view.from.normalize_or(Vec3::Z) * distance;
     let list = |v: Vec3| format!("[{}, {}, {}]", v.x, v.y, v.z);
     let json = format!(
         "{{\"size\": [{}, {}, {}], \"min\": {}, \"max\": {}, \"eye\": {}, \"target\": {},\n \

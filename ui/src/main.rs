@@ -1,2 +1,30 @@
-//! The program `pickglass`.
-fn main() {}
+//! The program `pickglass`: command line and window.
+//!
+//! [`cli`] is the grammar, [`commands`] has one file a command, [`window`] is the
+//! viewer. Both consume the same stream: a [`pickglass::job::Job`] that reports
+//! progress, and passes of a picture that refines. Nothing here computes cloth.
+
+mod cli;
+mod command_table;
+mod commands;
+mod opened;
+mod out;
+mod tokens;
+mod values;
+mod window;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
+    let cli = cli::Cli::parse();
+    match commands::run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            out::error_line(&error);
+            ExitCode::from(1)
+        }
+    }
+}

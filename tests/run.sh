@@ -1,0 +1,238 @@
+#!/usr/bin/env bash
+# Checks everything: format, lints, tests, documentation, the window.
+#
+#   bash tests/run.sh            all checks
+#   bash tests/run.sh --bench    the measurements instead, printed and never asserted
+#
+# Installs what it needs when it may (root and apt-get); otherwise it says what is
+# missing and goes on, and the tests that need it say so. With CI=true nothing that is
+# missing is forgiven.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+target=${CARGO_TARGET_DIR:-$PWD/target}
+passed=()
+missing=()
+started=$SECONDS
+
+say() { printf '%s\n' "$*"; }
+
+have() { command -v "$1" >/dev/null 2>&1; }
+
+# step NAME COMMAND...: runs a check, named before and counted after.
+step() {
+    local name=$1 begun=$SECONDS
+    shift
+    say "== $name"
+    "$@"
+    say "   $name: passed, $((SECONDS - begun)) s"
+    passed+=("$name")
+}
+
+lacks() {
+    say "   missing: $1"
+    missing+=("$1")
+}
+
+# install PACKAGE...: Debian packages, where that is possible.
+install() {
+    local wanted=() package
+    for package in "$@"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'install ok' || wanted+=("$package")
+    done
+    ((${#wanted[@]})) || return 0
+    if [[ $(id -u) -ne 0 ]]; then
+        lacks "${wanted[*]} (run as root once, or: sudo apt-get install ${wanted[*]})"
+        return 0
+    fi
+    say "   installing ${wanted[*]}"
+    if [[ -z ${updated:-} ]]; then
+        apt-get update -qq >/dev/null 2>&1 || true
+        updated=yes
+    fi
+    # One by one when together fails, so that one package does not keep out the others.
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${wanted[@]}" \
+        >/dev/null 2>&1 && return 0
+    for package in "${wanted[@]}"; do
+        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$package" \
+            >/dev/null 2>&1 || lacks "$package"
+    done
+}
+
+# The Rust toolchain's parts; a rustup that cannot be asked is not an error.
+component() {
+    cargo "$1" --version >/dev/null 2>&1 && return 0
+    have rustup && rustup component add "$2" >/dev/null 2>&1 || true
+    cargo "$1" --version >/dev/null 2>&1 && return 0
+    lacks "cargo $1 (rustup component add $2)"
+    return 1
+}
+
+prepare_system() {
+    if have apt-get && have dpkg-query; then
+        install mesa-vulkan-drivers libvulkan1 xvfb xauth libxkbcommon-x11-0 libxkbcommon0 \
+            libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2 libwayland-client0 \
+            python3 python3-venv
+        [[ $bench == no ]] || install libllvm15
+    else
+        say "   no apt-get here: taking what is installed"
+    fi
+}
+
+# A software adapter, so that every machine draws the same picture.
+prepare_graphics() {
+    local icd
+    for icd in /usr/share/vulkan/icd.d/lvp_icd*.json; do
+        if [[ -f $icd ]]; then
+            export VK_DRIVER_FILES=$icd
+            break
+        fi
+    done
+    export WGPU_BACKEND=vulkan
+    if [[ -z ${VK_DRIVER_FILES:-} ]]; then
+        lacks "software Vulkan (mesa-vulkan-drivers)"
+    fi
+    XDG_RUNTIME_DIR=$scratch/run
+    mkdir -m 700 "$XDG_RUNTIME_DIR"
+    export XDG_RUNTIME_DIR
+}
+
+# The programs that results are compared with, in an environment of their own.
+prepare_peers() {
+    local peers=$target/peers
+    if ! have python3; then
+        lacks "python3, and with it the peers"
+        return 0
+    fi
+    if ! "$peers/bin/python" -c 'import mitsuba, numpy' >/dev/null 2>&1; then
+        say "   installing the peers"
+        python3 -m venv --clear "$peers" >"$scratch/peers.log" 2>&1 &&
+            "$peers/bin/python" -m pip install --quiet --disable-pip-version-check \
+                'mitsuba==3.5.2' numpy >>"$scratch/peers.log" 2>&1 || true
+    fi
+    if "$peers/bin/python" -c 'import mitsuba, numpy' >/dev/null 2>&1; then
+        export PICKGLASS_MITSUBA_PYTHON=$peers/bin/python
+    else
+        tail -n 3 "$scratch/peers.log" 2>/dev/null || true
+        lacks "mitsuba 3.5.2 (python3 -m venv $peers; $peers/bin/pip install mitsuba==3.5.2 numpy)"
+    fi
+    local llvm
+    for llvm in /usr/lib/x86_64-linux-gnu/libLLVM-15.so* /usr/lib/llvm-15/lib/libLLVM-15.so*; do
+        if [[ -e $llvm ]]; then
+            export DRJIT_LIBLLVM_PATH=$llvm
+            break
+        fi
+    done
+}
+
+# A virtual display of our own for a command; its number is chosen by the server.
+with_display() {
+    local server number=""
+    Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3>"$scratch/display" 2>/dev/null &
+    server=$!
+    for _ in $(seq 100); do
+        number=$(cat "$scratch/display")
+        [[ -z $number ]] || break
+        sleep 0.1
+    done
+    local status=0
+    if [[ -n $number ]]; then
+        DISPLAY=:$number WAYLAND_DISPLAY='' "$@" || status=$?
+    else
+        say "   the virtual display did not start"
+        status=1
+    fi
+    kill "$server" 2>/dev/null || true
+    wait "$server" 2>/dev/null || true
+    return "$status"
+}
+
+smoke_window() {
+    with_display timeout 300 "$target/release/pickglass" oxford --smoke-frames 20
+}
+
+# With no display: the picture instead, and a line that says so.
+smoke_no_display() {
+    local folder=$scratch/no-display program
+    program=$(cd "$target/release" && pwd)/pickglass
+    mkdir -p "$folder"
+    (cd "$folder" && env -u DISPLAY -u WAYLAND_DISPLAY -u WAYLAND_SOCKET \
+        timeout 900 "$program" >said 2>&1) || { cat "$folder/said"; return 1; }
+    grep -q 'No window' "$folder/said" || { cat "$folder/said"; return 1; }
+    [[ -s $folder/cloth.png ]] || { say "   cloth.png was not written"; return 1; }
+}
+
+run_tests() {
+    cargo test --release --workspace --quiet
+}
+
+run_docs() {
+    RUSTDOCFLAGS='-D warnings' cargo doc --release --workspace --no-deps --quiet
+}
+
+check_all() {
+    if component fmt rustfmt; then step "format" cargo fmt --all --check; fi
+    if component clippy clippy; then
+        step "lints" cargo clippy --release --workspace --all-targets --quiet -- -D warnings
+    fi
+    step "build" cargo build --release --workspace --quiet
+    step "tests" run_tests
+    step "documentation" run_docs
+    if have Xvfb; then
+        step "window" smoke_window
+    else
+        lacks "Xvfb, and with it the check of the window"
+    fi
+    step "no display" smoke_no_display
+}
+
+measure_all() {
+    local file name found=no
+    for file in tests/benches/*.rs; do
+        [[ -f $file ]] || continue
+        found=yes
+        name=$(basename "$file" .rs)
+        step "bench $name" cargo bench --bench "$name" --profile release
+    done
+    [[ $found == yes ]] || say "there is nothing to measure"
+}
+
+bench=no
+case ${1:-} in
+'') ;;
+--bench) bench=yes ;;
+*)
+    say "usage: bash tests/run.sh [--bench]" >&2
+    exit 2
+    ;;
+esac
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+trap 'say "FAILED after $((SECONDS - started)) s; passed before: ${passed[*]:-nothing}"' ERR
+set -o errtrace
+
+if [[ ${CI:-} == true ]]; then
+    export GOLDEN_REQUIRED=1
+fi
+have cargo || { say "missing: cargo (install Rust with rustup)"; exit 1; }
+
+say "== what is needed"
+prepare_system
+prepare_graphics
+prepare_peers
+
+if [[ $bench == yes ]]; then
+    measure_all
+else
+    check_all
+fi
+
+say
+((${#missing[@]} == 0)) || printf 'missing: %s\n' "${missing[@]}"
+printf -v list '%s, ' "${passed[@]}"
+say "passed in $((SECONDS - started)) s: ${list%, }"
+if [[ ${CI:-} == true && ${#missing[@]} -gt 0 ]]; then
+    say "in CI nothing may be missing"
+    exit 1
+fi

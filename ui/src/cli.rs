@@ -1,0 +1,213 @@
+//! The grammar of the command line. Others script it, so it only ever grows.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use pickglass::render::{Backing, PRESET_NAMES, View};
+
+use crate::values::{self, Dial, PicturePath, SettArg, Size};
+use pickglass::still::{EffectChoice, LightChoice};
+
+/// Look closely at cloth that has not been woven yet.
+#[derive(Debug, Parser)]
+#[command(name = "pickglass", version, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub window: WindowArgs,
+}
+
+/// What `pickglass` does when it is not given a command: opens the window.
+#[derive(Debug, Args)]
+pub struct WindowArgs {
+    /// A design (.ron), a draft (.wif) or a preset's name
+    pub design: Option<String>,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Close the window after this many frames
+    #[arg(long, hide = true, value_name = "N")]
+    pub smoke_frames: Option<u32>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Floats, warnings and scale of a design
+    Check(CheckArgs),
+    /// Convert between draft and design formats
+    Convert(ConvertArgs),
+    /// Assign exemplar blocks and fix their edges; no picture
+    Synthesize(SynthesizeArgs),
+    /// Render a picture of the cloth
+    Still(Box<StillArgs>),
+}
+
+#[derive(Debug, Args)]
+pub struct SettArgs {
+    /// Ends per cm, and picks per cm where they differ
+    #[arg(long, value_name = "E[xP]", value_parser = values::sett)]
+    pub sett: Option<SettArg>,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// A design (.ron), a draft (.wif) or a preset's name
+    #[arg(value_name = "FILE")]
+    pub design: String,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    /// A design (.ron), a draft (.wif) or a preset's name
+    #[arg(value_name = "IN")]
+    pub input: String,
+    /// The file to write; its ending chooses the format (.ron or .wif)
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How blocks are assigned to crossings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodArg {
+    /// The first candidate that matches
+    Naive,
+    /// The longest run of neighbours at each step
+    Greedy,
+    /// The best total along each column
+    Dp,
+}
+
+#[derive(Debug, Args)]
+pub struct SynthesizeArgs {
+    /// A design (.ron), a draft (.wif) or a preset's name
+    pub design: String,
+    /// How blocks are assigned to crossings
+    #[arg(long, value_enum, default_value_t = MethodArg::Dp)]
+    pub method: MethodArg,
+    /// Rank of the edge fixing; 0 leaves the edges alone
+    #[arg(long, value_name = "R", default_value_t = 15)]
+    pub rank: u32,
+    /// Seed of the patch shifts
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What draws the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum RendererArg {
+    /// The best this build and this machine have
+    Auto,
+    /// The path tracer on the processor
+    Cpu,
+    /// The path tracer on a graphics card
+    Gpu,
+    /// Slices for zoomed-out views
+    Lumislice,
+}
+
+#[derive(Debug, Args)]
+#[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
+pub struct StillArgs {
+    /// A design (.ron), a draft (.wif) or a preset's name
+    pub design: String,
+    /// The picture to write, .png or .exr
+    #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
+    pub output: PicturePath,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: Size,
+    /// Paths per pixel [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub spp: Option<u32>,
+    /// Refine for this long
+    #[arg(long, value_name = "S", value_parser = values::positive)]
+    pub seconds: Option<f64>,
+    /// Refine until the relative error is this small, e.g. 0.02 or 2%
+    #[arg(long, value_name = "E", value_parser = values::fraction)]
+    pub error: Option<f64>,
+    /// Where the eye is
+    #[arg(long, default_value = "face", value_parser = values::view())]
+    pub view: View,
+    /// Width of cloth the picture shows, in mm [default: the view's own]
+    #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
+    pub mm: Option<f64>,
+    /// A light's name, or an equirectangular environment (.exr)
+    #[arg(long, value_name = "PRESET|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
+    pub light: LightChoice,
+    /// Exposure in stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::finite)]
+    pub exposure: f64,
+    /// What lies behind the cloth
+    #[arg(long, default_value = "none", value_parser = values::backing())]
+    pub backing: Backing,
+    /// What draws the picture
+    #[arg(long, value_enum, default_value_t = RendererArg::Auto)]
+    pub renderer: RendererArg,
+    /// auto, all or none, then +name and -name, separated by commas
+    #[arg(long, value_name = "auto|all|none|±name", default_value = "auto", allow_hyphen_values = true, value_parser = values::effects)]
+    pub effects: EffectChoice,
+    /// The colourway of the design
+    #[arg(long, value_name = "C")]
+    pub colourway: Option<String>,
+    /// Seed of the patch shifts and of the paths
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+    /// Set one dial of one approximation, e.g. rank=15; may be repeated
+    #[arg(long = "set", value_name = "dial=value", value_parser = values::dial)]
+    pub dials: Vec<Dial>,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_grammar_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_still_takes_every_flag() {
+        let line = "pickglass still twill -o a.png --size 64x32 --seconds 2 --view back --mm 5 \
+                    --light sun --exposure -1 --backing black --renderer cpu --effects none,+hairs \
+                    --seed 3 --set rank=4 --sett 24x20 --json";
+        let cli = Cli::try_parse_from(line.split_whitespace()).expect("a right command line");
+        let Some(Command::Still(still)) = cli.command else {
+            panic!("not a still")
+        };
+        assert_eq!((still.size.width, still.size.height), (64, 32));
+        assert_eq!(still.sett.sett.map(|s| s.picks_per_cm), Some(20.0));
+        assert_eq!(still.dials.len(), 1);
+    }
+
+    #[test]
+    fn two_ways_to_stop_are_wrong_usage() {
+        let line = "pickglass still twill -o a.png --spp 4 --seconds 2";
+        let error = Cli::try_parse_from(line.split_whitespace()).expect_err("exclusive");
+        assert_eq!(error.exit_code(), 2);
+    }
+}

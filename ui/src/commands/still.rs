@@ -1,0 +1,135 @@
+//! `pickglass still`: a picture of the cloth.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::{check_output, note_warnings, seconds_json};
+use crate::cli::{RendererArg, StillArgs};
+use crate::opened::Opened;
+use crate::out::{self, Progress};
+use pickglass::still::{self, StillReport, StillRequest, Stop};
+
+/// Paths per pixel when no way to stop is given.
+const USUAL_SPP: u32 = 64;
+
+pub fn run(args: &StillArgs) -> anyhow::Result<()> {
+    refuse_absent_renderers(args.renderer)?;
+    let path = &args.output.0;
+    check_output(path)?;
+    let opened = Opened::argument(&args.design, &args.sett)?;
+    note_warnings(&opened.warnings);
+    if let Some(colourway) = &args.colourway {
+        anyhow::bail!(
+            "colourway {colourway}: {} has its own yarns only: leave out --colourway",
+            opened.name()
+        );
+    }
+    let report = render_to(&opened, &request(args), path)?;
+    if args.json {
+        return out::say_json(&report_json(&report));
+    }
+    out::say(&describe(&report, path))
+}
+
+/// Renders a picture into a file, with progress on standard error.
+pub fn render_to(
+    opened: &Opened,
+    request: &StillRequest,
+    path: &Path,
+) -> anyhow::Result<StillReport> {
+    let progress = Progress::new();
+    let still = still::render_still(&opened.design, request, &progress.job(), &mut |pass| {
+        let error = pass.error.map_or_else(String::new, |error| {
+            format!(" · error {:.1} %", error * 100.0)
+        });
+        progress.show(&format!("{} spp · {:.1} s{error}", pass.spp, pass.seconds));
+    });
+    progress.finish();
+    let still = still?;
+    still.save(path)?;
+    Ok(still.report)
+}
+
+/// The picture's line for a person.
+pub fn describe(report: &StillReport, path: &Path) -> String {
+    let error = report.error.map_or_else(String::new, |error| {
+        format!(", error {:.2} %", error * 100.0)
+    });
+    let wrong = match report.invalid_samples + report.majorant_violations {
+        0 => String::new(),
+        _ => format!(
+            "\n  {} invalid samples, {} majorant violations",
+            report.invalid_samples, report.majorant_violations
+        ),
+    };
+    format!(
+        "wrote {} ({} x {}, {} spp{error}, {:.1} s, {:.2} M paths/s){wrong}",
+        path.display(),
+        report.width,
+        report.height,
+        report.spp,
+        report.total_seconds,
+        report.paths_per_second / 1e6,
+    )
+}
+
+/// The picture's report with the keys that scripts rely on.
+pub fn report_json(report: &StillReport) -> Value {
+    let effects: Vec<Value> = report
+        .effects
+        .iter()
+        .map(|(name, on)| json!({ "name": name, "on": on }))
+        .collect();
+    json!({
+        "renderer": report.renderer,
+        "width": report.width,
+        "height": report.height,
+        "spp": report.spp,
+        "seconds": seconds_json(&report.seconds, report.total_seconds),
+        "paths_per_second": report.paths_per_second,
+        "error": report.error,
+        "invalid_samples": report.invalid_samples,
+        "majorant_violations": report.majorant_violations,
+        "effects": effects,
+    })
+}
+
+fn refuse_absent_renderers(renderer: RendererArg) -> anyhow::Result<()> {
+    let name = match renderer {
+        RendererArg::Auto | RendererArg::Cpu => return Ok(()),
+        RendererArg::Gpu => "gpu",
+        RendererArg::Lumislice => "lumislice",
+    };
+    anyhow::bail!("--renderer {name}: this build has no such renderer: use auto or cpu")
+}
+
+fn request(args: &StillArgs) -> StillRequest {
+    let mut stop = Stop {
+        spp: args.spp,
+        seconds: args.seconds,
+        error: args.error,
+    };
+    if stop == Stop::default() {
+        stop.spp = Some(USUAL_SPP);
+    }
+    StillRequest {
+        width: args.size.width,
+        height: args.size.height,
+        view: args.view,
+        width_mm: args.mm.map(|mm| mm as f32),
+        centre_mm: None,
+        light: args.light.clone(),
+        exposure_ev: args.exposure as f32,
+        backing: args.backing,
+        effects: args.effects.clone(),
+        dials: args
+            .dials
+            .iter()
+            .map(|dial| (dial.name.clone(), dial.value.clone()))
+            .collect(),
+        seed: args.seed,
+        stop,
+        colourway: args.colourway.clone(),
+    }
+}

@@ -1,0 +1,116 @@
+//! What the program says: results on standard output, progress and errors on standard
+//! error. A closed pipe is the reader's choice, never a panic.
+
+use std::io::{IsTerminal, Write};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use pickglass::job::Job;
+
+/// Writes `text` to standard output. A broken pipe ends the writing in silence.
+pub fn say(text: &str) -> anyhow::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.write_all(b"\n"))
+        .and_then(|()| stdout.flush())
+    {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(anyhow::anyhow!(
+            "standard output could not be written ({error}): send it elsewhere"
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Writes one JSON object to standard output.
+pub fn say_json(value: &serde_json::Value) -> anyhow::Result<()> {
+    say(&value.to_string())
+}
+
+/// Writes a remark to standard error; a closed standard error is nobody's concern.
+pub fn note(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// Writes the one line of an error: the thing, the place, the remedy.
+pub fn error_line(error: &anyhow::Error) {
+    let text = format!("{error:#}");
+    let line: Vec<&str> = text.split_whitespace().collect();
+    note(&format!("pickglass: {}", line.join(" ")));
+}
+
+/// A single line on standard error that is rewritten in place; silent when standard
+/// error is not a terminal.
+#[derive(Clone)]
+pub struct Progress(Option<Arc<Mutex<Line>>>);
+
+struct Line {
+    width: usize,
+    last: Option<Instant>,
+}
+
+/// The line is rewritten at most this often.
+const PROGRESS_PERIOD: Duration = Duration::from_millis(80);
+
+impl Progress {
+    pub fn new() -> Self {
+        let line = Line {
+            width: 0,
+            last: None,
+        };
+        Self(
+            std::io::stderr()
+                .is_terminal()
+                .then(|| Arc::new(Mutex::new(line))),
+        )
+    }
+
+    /// A job that reports to this line.
+    pub fn job(&self) -> Job {
+        let line = self.clone();
+        if line.0.is_none() {
+            return Job::new();
+        }
+        Job::new().with_listener(move |stage, fraction| {
+            let percent = (fraction.clamp(0.0, 1.0) * 100.0).round();
+            line.show(&format!("{stage} {percent} %"));
+        })
+    }
+
+    /// Rewrites the line, unless it was just rewritten.
+    pub fn show(&self, text: &str) {
+        let Some(Ok(mut line)) = self.0.as_ref().map(|line| line.lock()) else {
+            return;
+        };
+        if line
+            .last
+            .is_some_and(|last| last.elapsed() < PROGRESS_PERIOD)
+        {
+            return;
+        }
+        line.last = Some(Instant::now());
+        let width = text.chars().count();
+        let blank = " ".repeat(line.width.saturating_sub(width));
+        line.width = width;
+        let mut stderr = std::io::stderr().lock();
+        let _ = write!(stderr, "\r{text}{blank}").and_then(|()| stderr.flush());
+    }
+
+    /// Clears the line.
+    pub fn finish(&self) {
+        let Some(Ok(mut line)) = self.0.as_ref().map(|line| line.lock()) else {
+            return;
+        };
+        let mut stderr = std::io::stderr().lock();
+        let _ = write!(stderr, "\r{}\r", " ".repeat(line.width)).and_then(|()| stderr.flush());
+        line.width = 0;
+    }
+}
+
+impl Drop for Line {
+    fn drop(&mut self) {
+        if self.width > 0 {
+            note("");
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Sizes and colours of the window: the one file that names them.
+//!
+//! Greys are steps of CIE L*, equal channels, so that the interface never tints the
+//! eye's judgement of a yarn. One accent; warning and error always come with a word.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "colours are made here so that they are made nowhere else"
+)]
+
+use std::collections::BTreeMap;
+
+use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, vec2};
+
+/// The 4-point grid.
+pub const GRID: f32 = 4.0;
+/// Space between neighbours.
+pub const GAP: f32 = 2.0 * GRID;
+/// Space round a group.
+pub const PAD: f32 = 3.0 * GRID;
+/// Corner radius of everything that has one.
+pub const RADIUS: u8 = 4;
+
+/// Type sizes.
+pub const TEXT_SMALL: f32 = 11.0;
+pub const TEXT_BODY: f32 = 13.0;
+pub const TEXT_HEADING: f32 = 16.0;
+pub const TEXT_TITLE: f32 = 20.0;
+
+/// Width of the strip beside the cloth.
+pub const STRIP_WIDTH: f32 = 240.0;
+/// Longest a scale bar may get.
+pub const SCALE_BAR: f32 = 160.0;
+/// Width of a message.
+pub const TOAST_WIDTH: f32 = 340.0;
+
+/// Surround of the cloth, L* 50 in both themes.
+pub const SURROUND: Color32 = Color32::from_gray(119);
+/// The one accent.
+pub const ACCENT: Color32 = Color32::from_rgb(58, 124, 214);
+/// Grid lines over a drawdown.
+pub const GRID_LINE: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 70);
+/// Every fourth grid line.
+pub const GRID_LINE_STRONG: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 150);
+
+/// The title style's name.
+pub fn title() -> TextStyle {
+    TextStyle::Name("title".into())
+}
+
+/// The greys and signals of one theme.
+#[derive(Debug, Clone, Copy)]
+pub struct Palette {
+    /// Deepest plane: fields and tracks.
+    pub deep: Color32,
+    /// Panels.
+    pub panel: Color32,
+    /// Raised things: buttons, menus, plates over cloth.
+    pub raised: Color32,
+    /// Hairlines, and raised things under the pointer.
+    pub line: Color32,
+    /// Text that may be overlooked.
+    pub quiet: Color32,
+    /// Text.
+    pub text: Color32,
+    pub warning: Color32,
+    pub error: Color32,
+}
+
+impl Palette {
+    /// The palette of a theme.
+    pub const fn of(theme: Theme) -> Self {
+        match theme {
+            Theme::Dark => Self {
+                deep: Color32::from_gray(31),
+                panel: Color32::from_gray(44),
+                raised: Color32::from_gray(57),
+                line: Color32::from_gray(80),
+                quiet: Color32::from_gray(185),
+                text: Color32::from_gray(221),
+                warning: Color32::from_rgb(232, 176, 74),
+                error: Color32::from_rgb(244, 138, 126),
+            },
+            Theme::Light => Self {
+                deep: Color32::from_gray(249),
+                panel: Color32::from_gray(238),
+                raised: Color32::from_gray(221),
+                line: Color32::from_gray(193),
+                quiet: Color32::from_gray(94),
+                text: Color32::from_gray(38),
+                warning: Color32::from_rgb(138, 84, 0),
+                error: Color32::from_rgb(176, 32, 24),
+            },
+        }
+    }
+
+    /// The palette of the theme in use.
+    pub fn current(ui: &egui::Ui) -> Self {
+        Self::of(ui.theme())
+    }
+}
+
+/// An opaque colour of a yarn, as sRGB bytes.
+pub const fn yarn_colour(red: u8, green: u8, blue: u8) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+/// Sets both themes of a context.
+pub fn apply(ctx: &egui::Context) {
+    for theme in [Theme::Dark, Theme::Light] {
+        let mut style = (*ctx.style_of(theme)).clone();
+        style.text_styles = text_styles();
+        style.spacing.item_spacing = vec2(GAP, GRID);
+        style.spacing.button_padding = vec2(GAP, GRID);
+        style.spacing.menu_margin = Margin::same(GRID as i8);
+        style.spacing.window_margin = Margin::same(PAD as i8);
+        style.spacing.interact_size.y = 6.0 * GRID;
+        style.interaction.tooltip_delay = 0.4;
+        style.visuals = visuals(theme, Palette::of(theme));
+        ctx.set_style_of(theme, style);
+    }
+}
+
+fn text_styles() -> BTreeMap<TextStyle, FontId> {
+    let face = |size| FontId::new(size, FontFamily::Proportional);
+    BTreeMap::from([
+        (TextStyle::Small, face(TEXT_SMALL)),
+        (TextStyle::Body, face(TEXT_BODY)),
+        (TextStyle::Button, face(TEXT_BODY)),
+        (TextStyle::Heading, face(TEXT_HEADING)),
+        (title(), face(TEXT_TITLE)),
+        (
+            TextStyle::Monospace,
+            FontId::new(TEXT_BODY, FontFamily::Monospace),
+        ),
+    ])
+}
+
+fn visuals(theme: Theme, palette: Palette) -> egui::Visuals {
+    let mut visuals = match theme {
+        Theme::Dark => egui::Visuals::dark(),
+        Theme::Light => egui::Visuals::light(),
+    };
+    let radius = CornerRadius::same(RADIUS);
+    visuals.panel_fill = palette.panel;
+    visuals.window_fill = palette.raised;
+    visuals.window_stroke = Stroke::new(1.0, palette.line);
+    visuals.window_corner_radius = radius;
+    visuals.menu_corner_radius = radius;
+    visuals.extreme_bg_color = palette.deep;
+    visuals.faint_bg_color = palette.raised;
+    visuals.weak_text_color = Some(palette.quiet);
+    visuals.warn_fg_color = palette.warning;
+    visuals.error_fg_color = palette.error;
+    visuals.hyperlink_color = ACCENT;
+    visuals.selection.bg_fill = ACCENT;
+    visuals.selection.stroke = Stroke::new(1.0, Color32::WHITE);
+    for (widget, fill) in [
+        (&mut visuals.widgets.noninteractive, palette.panel),
+        (&mut visuals.widgets.inactive, palette.raised),
+        (&mut visuals.widgets.hovered, palette.line),
+        (&mut visuals.widgets.active, palette.line),
+        (&mut visuals.widgets.open, palette.line),
+    ] {
+        widget.bg_fill = fill;
+        widget.weak_bg_fill = fill;
+        widget.bg_stroke = Stroke::new(1.0, palette.line);
+        widget.fg_stroke = Stroke::new(1.0, palette.text);
+        widget.corner_radius = radius;
+        widget.expansion = 0.0;
+    }
+    visuals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance (WCAG) of an opaque colour.
+    fn luminance(colour: Color32) -> f32 {
+        let linear = egui::Rgba::from(colour);
+        0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b()
+    }
+
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn text_can_be_read_on_every_plane() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = Palette::of(theme);
+            for plane in [palette.deep, palette.panel, palette.raised] {
+                for text in [palette.text, palette.quiet, palette.warning, palette.error] {
+                    let ratio = contrast(plane, text);
+                    assert!(ratio >= 4.5, "{theme:?} {plane:?} {text:?}: {ratio}");
+                }
+            }
+        }
+        assert!(contrast(ACCENT, Color32::WHITE) >= 3.9);
+    }
+
+    #[test]
+    fn greys_are_neutral() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = Palette::of(theme);
+            for grey in [
+                palette.deep,
+                palette.panel,
+                palette.raised,
+                palette.text,
+                SURROUND,
+            ] {
+                assert!(grey.r() == grey.g() && grey.g() == grey.b());
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The pane of the cloth: the newest picture where it belongs, however the eye moved
+//! since it was asked for.
+
+use egui::{
+    Color32, CursorIcon, Key, Rect, Response, Sense, Stroke, TextureHandle, TextureOptions, vec2,
+};
+
+use super::view::{ClothView, scale_bar};
+use super::worker::Picture;
+use crate::tokens::{self, Palette};
+use pickglass::still::StillRequest;
+
+/// One notch of a wheel zooms by about this much.
+const ZOOM_A_POINT: f32 = 0.004;
+/// An arrow key moves the cloth by this share of the pane.
+const KEY_STEP: f32 = 0.1;
+
+/// The picture on the screen.
+pub struct Shown {
+    pub still: StillRequest,
+    pub spp: u32,
+    pub seconds: f64,
+    pub error: Option<f64>,
+    pub full_size: bool,
+    pub full_cloth: bool,
+    texture: TextureHandle,
+}
+
+/// The pane's own state.
+#[derive(Default)]
+pub struct ClothPane {
+    pub shown: Option<Shown>,
+}
+
+impl ClothPane {
+    /// Takes a newer picture.
+    pub fn take(&mut self, ctx: &egui::Context, picture: Picture) {
+        let texture = match self.shown.take() {
+            Some(mut shown) => {
+                shown.texture.set(picture.image, TextureOptions::LINEAR);
+                shown.texture
+            }
+            None => ctx.load_texture("cloth", picture.image, TextureOptions::LINEAR),
+        };
+        self.shown = Some(Shown {
+            still: picture.still,
+            spp: picture.spp,
+            seconds: picture.seconds,
+            error: picture.error,
+            full_size: picture.full_size,
+            full_cloth: picture.full_cloth,
+            texture,
+        });
+    }
+
+    /// Shows the pane and moves `view` as the person asks.
+    pub fn show(&self, ui: &mut egui::Ui, view: &mut ClothView, description: &str) -> Response {
+        let pane = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(pane, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, description));
+        move_view(ui, &response, pane, view);
+        let painter = ui.painter_at(pane);
+        painter.rect_filled(pane, 0.0, tokens::SURROUND);
+        if let Some(shown) = &self.shown {
+            let still = &shown.still;
+            if let (Some(centre_mm), Some(width_mm)) = (still.centre_mm, still.width_mm) {
+                let aspect = still.width as f32 / still.height.max(1) as f32;
+                let rect = view.picture_rect(pane, centre_mm, width_mm, aspect);
+                let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+                painter.image(shown.texture.id(), rect, whole, Color32::WHITE);
+            }
+            scale_bar_ui(ui, pane, view);
+        }
+        if response.has_focus() {
+            let stroke = Stroke::new(2.0, tokens::ACCENT);
+            painter.rect_stroke(pane.shrink(1.0), 0.0, stroke, egui::StrokeKind::Inside);
+        }
+        response.on_hover_cursor(CursorIcon::Grab)
+    }
+}
+
+/// Drag pans, the wheel and pinching zoom at the pointer, arrow keys pan.
+fn move_view(ui: &egui::Ui, response: &Response, pane: Rect, view: &mut ClothView) {
+    if response.dragged() {
+        view.pan(response.drag_delta());
+        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+    }
+    if response.clicked() {
+        response.request_focus();
+    }
+    if let Some(anchor) = response.hover_pos() {
+        let (wheel, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = (wheel * ZOOM_A_POINT).exp() * pinch;
+        if (factor - 1.0).abs() > 1e-4 {
+            view.zoom(pane, anchor, factor);
+        }
+    }
+    if response.has_focus() {
+        ui.memory_mut(|memory| {
+            let all = egui::EventFilter {
+                horizontal_arrows: true,
+                vertical_arrows: true,
+                ..Default::default()
+            };
+            memory.set_focus_lock_filter(response.id, all);
+        });
+        for (key, direction) in [
+            (Key::ArrowLeft, vec2(1.0, 0.0)),
+            (Key::ArrowRight, vec2(-1.0, 0.0)),
+            (Key::ArrowUp, vec2(0.0, 1.0)),
+            (Key::ArrowDown, vec2(0.0, -1.0)),
+        ] {
+            if ui.input(|input| input.key_pressed(key)) {
+                view.pan(direction * pane.size() * KEY_STEP);
+            }
+        }
+    }
+}
+
+/// The scale bar on its plate, lower left.
+fn scale_bar_ui(ui: &egui::Ui, pane: Rect, view: &ClothView) {
+    let palette = Palette::current(ui);
+    let (length, caption) = scale_bar(view.mm_per_point, tokens::SCALE_BAR.min(pane.width() * 0.4));
+    let painter = ui.painter_at(pane);
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let text = painter.layout_no_wrap(caption, font, palette.text);
+    let inner = vec2(
+        length.max(text.size().x),
+        text.size().y + 2.0 * tokens::GRID,
+    );
+    let plate = Rect::from_min_size(
+        pane.left_bottom() + vec2(tokens::PAD, -tokens::PAD - inner.y - 2.0 * tokens::GRID),
+        inner + vec2(2.0 * tokens::GAP, 2.0 * tokens::GRID),
+    );
+    painter.rect_filled(plate, tokens::RADIUS, palette.raised);
+    let left = plate.left() + tokens::GAP;
+    painter.galley(
+        egui::pos2(left, plate.top() + tokens::GRID),
+        text,
+        palette.text,
+    );
+    let base = plate.bottom() - tokens::GAP;
+    let stroke = Stroke::new(1.5, palette.text);
+    painter.hline(left..=left + length, base, stroke);
+    for x in [left, left + length] {
+        painter.vline(x, base - tokens::GRID..=base + 1.0, stroke);
+    }
+}

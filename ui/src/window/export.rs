@@ -1,0 +1,268 @@
+//! Exporting a still: how large and how long, where to, and the work on its thread.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use egui::{DragValue, Id, Modal, RichText};
+use pickglass::job::Job;
+
+use super::icons;
+use super::task::{Outcome, Task};
+use super::toasts::Grade;
+use crate::opened::Opened;
+use crate::tokens::{self, Palette};
+use crate::values;
+use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
+
+/// What became of an export.
+pub enum Exported {
+    Written(PathBuf, Box<StillReport>),
+    Cancelled,
+    Failed(String),
+}
+
+/// What the form starts with.
+pub struct Defaults {
+    pub width: u32,
+    pub seconds: f64,
+    /// `None` = named after the design.
+    pub path: Option<PathBuf>,
+}
+
+impl Default for Defaults {
+    fn default() -> Self {
+        Self {
+            width: 2560,
+            seconds: 60.0,
+            path: None,
+        }
+    }
+}
+
+/// The export form and the export under way.
+#[derive(Default)]
+pub struct Export {
+    pub defaults: Defaults,
+    form: Option<Form>,
+    dialog: Option<Task<Option<PathBuf>>>,
+    work: Option<Work>,
+}
+
+struct Form {
+    opened: Opened,
+    still: StillRequest,
+    width: u32,
+    seconds: f64,
+    path: String,
+    wrong: Option<String>,
+}
+
+struct Work {
+    job: Job,
+    progress: Arc<Mutex<String>>,
+    task: Task<Exported>,
+}
+
+impl Drop for Work {
+    fn drop(&mut self) {
+        self.job.cancel();
+    }
+}
+
+impl Export {
+    /// Shows the form for the cloth as it is seen now.
+    pub fn ask(&mut self, opened: Opened, still: StillRequest) {
+        if self.work.is_none() {
+            self.form = Some(Form {
+                path: match &self.defaults.path {
+                    Some(path) => path.display().to_string(),
+                    None => format!("{}.png", opened.name().replace(['/', '\\'], "-")),
+                },
+                width: self.defaults.width,
+                seconds: self.defaults.seconds,
+                opened,
+                still,
+                wrong: None,
+            });
+        }
+    }
+
+    /// What the export under way is at.
+    pub fn progress(&self) -> Option<String> {
+        let work = self.work.as_ref()?;
+        let text = work.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        Some(text.clone())
+    }
+
+    /// Cancels the export under way.
+    pub fn cancel(&self) {
+        if let Some(work) = &self.work {
+            work.job.cancel();
+        }
+    }
+
+    /// Picks up what the threads finished.
+    pub fn poll(&mut self) -> Option<Exported> {
+        if let Some(dialog) = &self.dialog {
+            match dialog.poll() {
+                Outcome::Working => {}
+                Outcome::Ready(choice) => {
+                    if let (Some(path), Some(form)) = (choice, &mut self.form) {
+                        form.path = path.display().to_string();
+                        form.wrong = None;
+                    }
+                    self.dialog = None;
+                }
+                Outcome::Lost => self.dialog = None,
+            }
+        }
+        let done = match self.work.as_ref()?.task.poll() {
+            Outcome::Working => return None,
+            Outcome::Ready(done) => done,
+            Outcome::Lost => Exported::Failed(
+                "the still: rendering it failed unexpectedly: try a smaller size".to_owned(),
+            ),
+        };
+        self.work = None;
+        Some(done)
+    }
+
+    /// Shows the form, when it is asked for.
+    pub fn show(&mut self, ctx: &egui::Context) {
+        let Some(form) = &mut self.form else {
+            return;
+        };
+        let mut choice = Choice::None;
+        let modal = Modal::new(Id::unique("export")).show(ctx, |ui| choice = form_ui(ui, form));
+        if modal.should_close() {
+            choice = Choice::Close;
+        }
+        match choice {
+            Choice::None => {}
+            Choice::Close => self.form = None,
+            Choice::Browse if self.dialog.is_none() => {
+                self.dialog = Task::start(ctx, "dialog", || {
+                    rfd::FileDialog::new()
+                        .set_title("Export a still")
+                        .add_filter("Pictures", &["png", "exr"])
+                        .save_file()
+                })
+                .ok();
+            }
+            Choice::Browse => {}
+            Choice::Render => match values::picture_path(form.path.trim()) {
+                Ok(path) => {
+                    if let Some(form) = self.form.take() {
+                        self.begin(ctx, form, path.0);
+                    }
+                }
+                Err(wrong) => form.wrong = Some(wrong),
+            },
+        }
+    }
+
+    fn begin(&mut self, ctx: &egui::Context, form: Form, path: PathBuf) {
+        let progress = Arc::new(Mutex::new("preparing".to_owned()));
+        let (told, told_ctx) = (Arc::clone(&progress), ctx.clone());
+        let tell = move |text: String| {
+            *told.lock().unwrap_or_else(PoisonError::into_inner) = text;
+            told_ctx.request_repaint();
+        };
+        let tell_stage = tell.clone();
+        let job = Job::new().with_listener(move |stage, fraction| {
+            tell_stage(format!("{stage} {:.0} %", fraction * 100.0));
+        });
+        let mut still = form.still;
+        still.height = scaled_height(&still, form.width);
+        still.width = form.width;
+        still.stop = Stop {
+            seconds: Some(form.seconds),
+            ..Stop::default()
+        };
+        let (opened, work_job) = (form.opened, job.clone());
+        let task = Task::start(ctx, "export", move || {
+            let rendered = still::render_still(&opened.design, &still, &work_job, &mut |pass| {
+                tell(format!("{} spp · {:.0} s", pass.spp, pass.seconds));
+            });
+            match rendered.and_then(|done| done.save(&path).map(|()| done.report)) {
+                Ok(report) => Exported::Written(path, Box::new(report)),
+                Err(StillError::Cancelled(_)) => Exported::Cancelled,
+                Err(error) => Exported::Failed(error.to_string()),
+            }
+        });
+        self.work = task.ok().map(|task| Work {
+            job,
+            progress,
+            task,
+        });
+    }
+}
+
+enum Choice {
+    None,
+    Close,
+    Browse,
+    Render,
+}
+
+fn scaled_height(still: &StillRequest, width: u32) -> u32 {
+    let aspect = f64::from(still.height) / f64::from(still.width.max(1));
+    ((f64::from(width) * aspect).round() as u32).max(1)
+}
+
+fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
+    ui.set_width(tokens::TOAST_WIDTH);
+    let palette = Palette::current(ui);
+    let mut choice = Choice::None;
+    ui.label(RichText::new("Export still").text_style(egui::TextStyle::Heading));
+    ui.label(RichText::new("The cloth as it is shown now.").color(palette.quiet));
+    ui.add_space(tokens::GAP);
+    egui::Grid::new("export form")
+        .num_columns(2)
+        .show(ui, |ui| {
+            let label = ui.label("Width");
+            ui.add(
+                DragValue::new(&mut form.width)
+                    .range(16..=16_384)
+                    .suffix(" px"),
+            )
+            .labelled_by(label.id);
+            ui.end_row();
+            ui.label("Height");
+            ui.label(format!("{} px", scaled_height(&form.still, form.width)));
+            ui.end_row();
+            let label = ui.label("Refine for");
+            ui.add(
+                DragValue::new(&mut form.seconds)
+                    .range(0.1..=36_000.0)
+                    .suffix(" s"),
+            )
+            .labelled_by(label.id);
+            ui.end_row();
+            let label = ui.label("File");
+            ui.horizontal(|ui| {
+                ui.add(egui::TextEdit::singleline(&mut form.path))
+                    .labelled_by(label.id);
+                if ui.button("Browse…").clicked() {
+                    choice = Choice::Browse;
+                }
+            });
+            ui.end_row();
+        });
+    if let Some(wrong) = &form.wrong {
+        ui.horizontal(|ui| {
+            icons::show(ui, Grade::Error, palette.error);
+            ui.label(RichText::new(format!("Error: {wrong}")).color(palette.error));
+        });
+    }
+    ui.add_space(tokens::GAP);
+    ui.horizontal(|ui| {
+        if ui.button("Render").clicked() {
+            choice = Choice::Render;
+        }
+        if ui.button("Cancel").clicked() {
+            choice = Choice::Close;
+        }
+    });
+    choice
+}

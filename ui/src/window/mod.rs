@@ -1,0 +1,83 @@
+//! The window: a viewer that shows a design refining.
+//!
+//! [`app`] holds the state and lays out the panes; [`worker`] draws on a thread of its
+//! own and sends pictures; [`view`] is the arithmetic of pan and zoom; [`files`] opens
+//! and exports on further threads, so that the window never waits.
+
+mod app;
+mod cloth_pane;
+mod export;
+mod files;
+mod icons;
+mod menu;
+mod status;
+mod strip;
+mod task;
+#[cfg(test)]
+mod tests;
+mod toasts;
+mod view;
+mod worker;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::opened::Opened;
+use app::PreviewSettings;
+
+/// Why there is no window.
+pub enum NoWindow {
+    /// None can open here; the reason in a few words.
+    Unavailable(String),
+    /// It opened and then broke.
+    Broken(anyhow::Error),
+}
+
+/// Opens the window and returns when it is closed.
+pub fn run(opened: Opened, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
+    if !display_named() {
+        return Err(NoWindow::Unavailable(
+            "no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned(),
+        ));
+    }
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Pickglass")
+            .with_app_id("pickglass")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([640.0, 400.0])
+            .with_drag_and_drop(true),
+        ..Default::default()
+    };
+    let shown = Arc::new(AtomicBool::new(false));
+    let created = Arc::clone(&shown);
+    let outcome = eframe::run_native(
+        "pickglass",
+        options,
+        Box::new(move |cc| {
+            let viewer = app::Viewer::new(&cc.egui_ctx, Some(opened), PreviewSettings::default())?;
+            created.store(true, Ordering::Relaxed);
+            Ok(Box::new(viewer.closing_after(smoke_frames)))
+        }),
+    );
+    match outcome {
+        Ok(()) => Ok(()),
+        Err(error) if shown.load(Ordering::Relaxed) => Err(NoWindow::Broken(anyhow::anyhow!(
+            "the window broke ({error}): start again, or use `pickglass still`"
+        ))),
+        Err(error) => {
+            let text = error.to_string();
+            let reason = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            Err(NoWindow::Unavailable(reason))
+        }
+    }
+}
+
+/// Whether the environment names a display; systems without such names always have one.
+fn display_named() -> bool {
+    let named = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(all(unix, not(target_os = "macos")))
+        || named("DISPLAY")
+        || named("WAYLAND_DISPLAY")
+        || named("WAYLAND_SOCKET")
+}

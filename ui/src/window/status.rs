@@ -1,0 +1,103 @@
+//! The status line: what is shown, how good it is, and what is under way.
+
+use egui::{ProgressBar, RichText};
+
+use super::cloth_pane::Shown;
+use super::icons;
+use super::toasts::Grade;
+use super::worker::{Building, Phase};
+use crate::opened::Opened;
+use crate::tokens::{self, Palette};
+
+/// What the status line tells of.
+pub struct Status<'s> {
+    pub opened: Option<&'s Opened>,
+    pub shown: Option<&'s Shown>,
+    pub phase: &'s Phase,
+    pub building: Option<Building>,
+    pub paused: bool,
+    pub export: Option<String>,
+    /// The file that is being read.
+    pub reading: Option<&'s str>,
+    /// The crossing under the pointer, in words.
+    pub crossing: Option<&'s str>,
+}
+
+/// What the person wants ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cancel {
+    Preview,
+    Export,
+}
+
+/// Shows the line; returns what was cancelled.
+pub fn show(ui: &mut egui::Ui, status: &Status<'_>) -> Option<Cancel> {
+    let mut cancel = None;
+    let quiet = Palette::current(ui).quiet;
+    ui.horizontal_centered(|ui| {
+        if let Some(opened) = status.opened {
+            let design = &opened.design;
+            let (ends, picks) = (design.ends(), design.picks());
+            ui.label(format!("{} · {ends} ends × {picks} picks", opened.name()));
+        }
+        if let Some(crossing) = status.crossing {
+            ui.label(RichText::new(crossing).color(quiet));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(name) = status.reading {
+                ui.label(format!("Reading {name}"));
+                ui.spinner();
+                ui.separator();
+            }
+            if let Some(progress) = &status.export {
+                if ui.small_button("Cancel export").clicked() {
+                    cancel = Some(Cancel::Export);
+                }
+                ui.label(format!("Exporting: {progress}"));
+                ui.separator();
+            }
+            if preview_ui(ui, status) {
+                cancel = Some(Cancel::Preview);
+            }
+        });
+    });
+    cancel
+}
+
+/// The right end, laid out from right to left; true when its button was clicked.
+fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
+    let palette = Palette::current(ui);
+    let mut cancelled = false;
+    if let Some(Building { stage, fraction }) = &status.building {
+        cancelled = ui.small_button("Cancel").clicked();
+        ui.add(
+            ProgressBar::new(*fraction)
+                .desired_width(tokens::SCALE_BAR)
+                .desired_height(tokens::GAP),
+        );
+        ui.label(stage);
+        ui.separator();
+    }
+    if let Phase::Failed(_) = status.phase {
+        ui.label(RichText::new("Error: not drawn").color(palette.error));
+        icons::show(ui, Grade::Error, palette.error);
+    } else if let Some(shown) = status.shown {
+        ui.label(quality(shown, status));
+    }
+    cancelled
+}
+
+fn quality(shown: &Shown, status: &Status<'_>) -> String {
+    let error = shown.error.map_or_else(String::new, |error| {
+        format!(" · error {:.1} %", error * 100.0)
+    });
+    let state = match status.phase {
+        _ if status.paused => " · paused",
+        Phase::Stopped => " · stopped",
+        Phase::Done => " · done",
+        _ if !shown.full_cloth => " · coarse fibres",
+        _ if !shown.full_size => " · coarse",
+        _ => "",
+    };
+    format!("{} spp · {:.1} s{error}{state}", shown.spp, shown.seconds)
+}

@@ -1,0 +1,202 @@
+//! The program from outside: results, exit codes and the one line of an error.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn pickglass(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pickglass"))
+        .args(arguments)
+        .current_dir(folder)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env_remove("RUST_LOG")
+        .output()
+        .expect("the program starts")
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(text.trim_end().lines().count(), 1, "one object: {text}");
+    serde_json::from_str(&text).expect("an object")
+}
+
+fn has_keys(value: &serde_json::Value, keys: &[&str]) {
+    for key in keys {
+        let pointer = format!("/{}", key.replace('.', "/"));
+        assert!(value.pointer(&pointer).is_some(), "no {key} in {value}");
+    }
+}
+
+/// The error's one line.
+fn refused(output: &Output, code: i32) -> String {
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    assert!(output.stdout.is_empty(), "nothing on standard output");
+    text
+}
+
+#[test]
+fn check_has_the_keys_that_scripts_rely_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = json(&pickglass(
+        folder.path(),
+        &["check", "silk-satin", "--json"],
+    ));
+    has_keys(
+        &report,
+        &[
+            "ends",
+            "picks",
+            "shafts",
+            "longest_float.warp_face",
+            "longest_float.warp_back",
+            "longest_float.weft_face",
+            "longest_float.weft_back",
+            "seam_floats",
+            "weavable",
+            "yarns",
+            "warnings",
+        ],
+    );
+    assert_eq!(report["longest_float"]["warp_face"], 7);
+}
+
+#[test]
+fn the_sett_decides_the_scale() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = json(&pickglass(
+        folder.path(),
+        &["check", "oxford", "--sett", "20x10", "--json"],
+    ));
+    assert!((report["width_mm"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
+    assert!((report["height_mm"].as_f64().expect("a number") - 2.0).abs() < 1e-4);
+    assert_eq!(report["sett_assumed"], false);
+}
+
+#[test]
+fn synthesize_has_the_keys_that_scripts_rely_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = json(&pickglass(
+        folder.path(),
+        &["synthesize", "oxford", "--json"],
+    ));
+    has_keys(
+        &report,
+        &[
+            "crossings",
+            "seconds.total",
+            "bytes",
+            "consistency.sum",
+            "consistency.max",
+            "continuity.before",
+            "continuity.after",
+            "continuity.max",
+            "seam_rms.before",
+            "seam_rms.after",
+        ],
+    );
+}
+
+#[test]
+fn a_still_is_written_and_reported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = [
+        "still", "oxford", "-o", "a.png", "--size", "40x24", "--spp", "2", "--json",
+    ];
+    let report = json(&pickglass(folder.path(), &line));
+    has_keys(
+        &report,
+        &[
+            "renderer",
+            "width",
+            "height",
+            "spp",
+            "seconds.total",
+            "paths_per_second",
+            "error",
+            "invalid_samples",
+            "majorant_violations",
+            "effects",
+        ],
+    );
+    assert_eq!(report["spp"], 2);
+    let picture = image::open(folder.path().join("a.png")).expect("a picture");
+    assert_eq!((picture.width(), picture.height()), (40, 24));
+    let names: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("a folder")
+        .collect();
+    assert_eq!(names.len(), 1, "nothing but the picture: {names:?}");
+}
+
+#[test]
+fn errors_are_one_line_and_exit_1() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for line in [
+        &["check", "absent.wif"][..],
+        &["still", "oxford", "-o", "absent/a.png"],
+        &["still", "oxford", "-o", "a.png", "--renderer", "gpu"],
+        &["still", "oxford", "-o", "a.png", "--renderer", "lumislice"],
+        &["still", "oxford", "-o", "a.png", "--colourway", "autumn"],
+        &["convert", "oxford", "out.unknown"],
+    ] {
+        let text = refused(&pickglass(folder.path(), line), 1);
+        assert_eq!(text.trim_end().lines().count(), 1, "{line:?}: {text}");
+        assert!(text.starts_with("pickglass: "), "{text}");
+        assert!(
+            text.matches([':', ';']).count() >= 2,
+            "thing, place, remedy: {text}"
+        );
+    }
+}
+
+#[test]
+fn wrong_usage_exits_2() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for line in [
+        &["still", "oxford"][..],
+        &["still", "oxford", "-o", "a.jpg"],
+        &["still", "oxford", "-o", "a.png", "--size", "0x1"],
+        &["still", "oxford", "-o", "a.png", "--spp", "0"],
+        &[
+            "still",
+            "oxford",
+            "-o",
+            "a.png",
+            "--spp",
+            "1",
+            "--seconds",
+            "1",
+        ],
+        &["still", "oxford", "-o", "a.png", "--view", "above"],
+        &["still", "oxford", "-o", "a.png", "--light", "candle"],
+        &["check", "oxford", "--sett", "zero"],
+        &["check"],
+        &["check", "oxford", "--unknown"],
+    ] {
+        refused(&pickglass(folder.path(), line), 2);
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_not_a_panic() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pickglass"))
+        .args(["check", "oxford"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert!(output.status.success());
+    assert!(
+        output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
