@@ -1,7 +1,9 @@
 //! Heights of the yarns at the edges of blocks, read off the voxels.
 //!
-//! What the edge fixing needs (Zhao 2012 §5.5): where the yarn that crosses an edge lies,
-//! on each face. Gaps beside the yarn are interpolated.
+//! What the edge fixing needs (Zhao 2012 §5.5): where the top-most yarn lies along an
+//! edge, on each face. That is what is seen: the surface that a look straight at the face
+//! stops at, at optical depth 1. Single fibres are no part of an edge's shape, so heights
+//! are smoothed over about two of them; gaps are interpolated.
 
 use rayon::prelude::*;
 
@@ -10,19 +12,43 @@ use super::voxelise::VoxelGrid;
 use crate::synthesis::{Catalogue, EdgeHeights, Face, Place, Side};
 use crate::yarn::{Direction, WeaveGeometry};
 
-/// Fill (of 255) from which a voxel counts as part of a yarn's surface.
-const SURFACE: u8 = 60;
+/// Standard deviation of the smoothing along an edge, mm: fibres are 10–20 µm thick.
+const SMOOTHING_MM: f32 = 0.025;
 
-/// Puts into `heights` what one exemplar's voxels, of `block` voxels a crossing, show.
+/// Puts into `heights` what one exemplar's voxels show. `full` is the extinction of a
+/// voxel wholly inside fibre, 1/mm: of warps, of wefts.
 pub(super) fn measure(
     heights: &mut EdgeHeights,
     catalogue: &Catalogue,
     exemplar: usize,
     volume: &BrickVolume,
-    block: [usize; 3],
+    grid: &VoxelGrid,
+    full: [f32; 2],
 ) {
+    let depths = full.map(|full| full * grid.voxel_mm.z / 255.0);
+    let surfaces = Face::ALL.map(|face| surface(volume, depths, face));
     fill(heights, catalogue, exemplar, &|place, side, face| {
-        profile(volume, [place.x.into(), place.y.into()], block, side, face)
+        let edge = Edge::new(place, side, grid);
+        let size = volume.size();
+        let height_at = |across: usize, along: usize| {
+            let (x, y) = if edge.axis == 0 {
+                (across % size[0], along)
+            } else {
+                (along, across % size[1])
+            };
+            surfaces[face as usize][y * size[0] + x]
+        };
+        let known: Vec<Option<f32>> = (0..edge.length)
+            .map(|position| {
+                // The border lies between the last stack on either side of it.
+                let sides = [edge.border + size[edge.axis] - 1, edge.border];
+                match sides.map(|across| height_at(across, edge.start + position)) {
+                    [Some(a), Some(b)] => Some(0.5 * (a + b)),
+                    [a, b] => a.or(b),
+                }
+            })
+            .collect();
+        edge.profile(&known, grid)
     });
 }
 
@@ -34,25 +60,141 @@ pub(super) fn predict(
     weave: &WeaveGeometry,
     grid: &VoxelGrid,
 ) {
+    let mm = [grid.voxel_mm.x, grid.voxel_mm.y];
     fill(heights, catalogue, exemplar, &|place, side, face| {
-        let crossing = [usize::from(place.x), usize::from(place.y)];
-        let (axis, far) = axis_of(side);
-        let (direction, index) = match axis {
-            0 => (Direction::Weft, crossing[1]),
-            _ => (Direction::Warp, crossing[0]),
-        };
-        let mm = [grid.voxel_mm.x, grid.voxel_mm.y];
-        let border = ((crossing[axis] + usize::from(far)) * grid.block[axis]) as f32 * mm[axis];
-        let length = grid.block[1 - axis];
-        let known: Vec<Option<f32>> = (0..length)
+        let edge = Edge::new(place, side, grid);
+        let known: Vec<Option<f32>> = (0..edge.length)
             .map(|position| {
-                let across = ((crossing[1 - axis] * length + position) as f32 + 0.5) * mm[1 - axis];
-                let z = weave.surface(direction, index, border, across, face == Face::Front)?;
+                let across = edge.border as f32 * mm[edge.axis];
+                let along = ((edge.start + position) as f32 + 0.5) * mm[1 - edge.axis];
+                let at = if edge.axis == 0 {
+                    [across, along]
+                } else {
+                    [along, across]
+                };
+                let z = topmost(weave, at, face)?;
                 Some((z - grid.floor_mm()) / grid.voxel_mm.z)
             })
             .collect();
-        interpolate(&known).unwrap_or_else(|| vec![0.5 * grid.block[2] as f32; length])
+        edge.profile(&known, grid)
     });
+}
+
+/// Height of the outermost yarn of a layout at a place, mm; `None` between the yarns.
+fn topmost(weave: &WeaveGeometry, at: [f32; 2], face: Face) -> Option<f32> {
+    let pitch = weave.pitch.to_array();
+    [Direction::Warp, Direction::Weft]
+        .into_iter()
+        .enumerate()
+        .flat_map(|(own, direction)| {
+            let count = weave.yarns(direction).len() as i64;
+            let nearest = (at[own] / pitch[own]).floor() as i64;
+            // Yarns bulge past their pitch.
+            (nearest - 1..=nearest + 1).filter_map(move |yarn| {
+                let index = yarn.rem_euclid(count);
+                let across = at[own] - (yarn - index) as f32 * pitch[own];
+                let (along, upper) = (at[1 - own], face == Face::Front);
+                weave.surface(direction, index as usize, along, across, upper)
+            })
+        })
+        .reduce(|a, b| match face {
+            Face::Front => a.max(b),
+            Face::Back => a.min(b),
+        })
+}
+
+/// Where one edge of a block lies in its exemplar, in voxels.
+struct Edge {
+    /// The axis across the edge.
+    axis: usize,
+    /// The border's place on that axis.
+    border: usize,
+    /// Where the edge starts on the other axis, and how many stacks it has.
+    start: usize,
+    length: usize,
+}
+
+impl Edge {
+    fn new(place: Place, side: Side, grid: &VoxelGrid) -> Self {
+        let (axis, far) = match side {
+            Side::Left => (0, 0),
+            Side::Right => (0, 1),
+            Side::Below => (1, 0),
+            Side::Above => (1, 1),
+        };
+        let crossing = [usize::from(place.x), usize::from(place.y)];
+        let length = grid.block[1 - axis];
+        Self {
+            axis,
+            border: (crossing[axis] + far) * grid.block[axis],
+            start: crossing[1 - axis] * length,
+            length,
+        }
+    }
+
+    /// The profile of an edge from the heights that are known along it; an edge without
+    /// any lies at half height.
+    fn profile(&self, known: &[Option<f32>], grid: &VoxelGrid) -> Vec<f32> {
+        let along = [grid.voxel_mm.x, grid.voxel_mm.y][1 - self.axis];
+        match interpolate(known) {
+            Some(heights) => smooth(&heights, SMOOTHING_MM / along),
+            None => vec![0.5 * grid.block[2] as f32; self.length],
+        }
+    }
+}
+
+/// Height in voxels at which the optical depth, seen from a face, passes 1, by stack in
+/// rows along x; `None` where one looks through. `depths` is the optical depth of a voxel
+/// across the fibres for each 1/255 of fill: of warps, of wefts.
+fn surface(volume: &BrickVolume, depths: [f32; 2], face: Face) -> Vec<Option<f32>> {
+    let [width, height, layers] = volume.size();
+    let of_stack = |stack: usize| {
+        let mut depth = 0.0;
+        for k in 0..layers {
+            let z = match face {
+                Face::Front => layers - 1 - k,
+                Face::Back => k,
+            };
+            let voxel = volume.get(stack % width, stack / width, z);
+            if voxel.fill() == 0 {
+                continue;
+            }
+            // Smooth fibres show their length times the sine to the line of sight.
+            let rise = voxel.direction().z;
+            let area = (1.0 - rise * rise).max(0.0).sqrt();
+            let gain = f32::from(voxel.fill()) * depths[usize::from(voxel.is_weft())] * area;
+            if depth + gain >= 1.0 {
+                let into = (1.0 - depth) / gain;
+                return Some(match face {
+                    Face::Front => z as f32 + 1.0 - into,
+                    Face::Back => z as f32 + into,
+                });
+            }
+            depth += gain;
+        }
+        None
+    };
+    (0..width * height).into_par_iter().map(of_stack).collect()
+}
+
+/// Gaussian means along a profile, of `sigma` stacks; the ends continue constantly.
+fn smooth(profile: &[f32], sigma: f32) -> Vec<f32> {
+    if !(sigma > 0.1) {
+        return profile.to_vec();
+    }
+    let last = profile.len() as i64 - 1;
+    let reach = ((3.0 * sigma).ceil() as i64).min(last + 1);
+    let weights: Vec<f32> = (-reach..=reach)
+        .map(|step| (-0.5 * (step as f32 / sigma).powi(2)).exp())
+        .collect();
+    let total: f32 = weights.iter().sum();
+    (0..=last)
+        .map(|at| {
+            let heights = (at - reach..=at + reach).map(|k| profile[k.clamp(0, last) as usize]);
+            let sum: f32 = weights.iter().zip(heights).map(|(w, h)| w * h).sum();
+            sum / total
+        })
+        .collect()
 }
 
 /// Fills the profiles of one exemplar's blocks.
@@ -75,56 +217,6 @@ fn fill(
             heights.profile_mut(face, id, side).copy_from_slice(profile);
         }
     }
-}
-
-/// The axis across an edge, and whether the edge is at its far end.
-fn axis_of(side: Side) -> (usize, bool) {
-    match side {
-        Side::Left => (0, false),
-        Side::Right => (0, true),
-        Side::Below => (1, false),
-        Side::Above => (1, true),
-    }
-}
-
-/// Height profile, in voxels, of the yarn that crosses one edge of a block.
-fn profile(
-    volume: &BrickVolume,
-    crossing: [usize; 2],
-    block: [usize; 3],
-    side: Side,
-    face: Face,
-) -> Vec<f32> {
-    let size = volume.size();
-    let (axis, far) = axis_of(side);
-    // Wefts cross the left and right edges, warps the others.
-    let (weft, yarn) = (axis == 0, crossing[1 - axis]);
-    let border = (crossing[axis] + usize::from(far)) * block[axis];
-    let length = block[1 - axis];
-    let surface = |across: usize, position: usize| {
-        let mut at = [0; 2];
-        at[axis] = across % size[axis];
-        at[1 - axis] = crossing[1 - axis] * length + position;
-        let holds = |z: &usize| {
-            let voxel = volume.get(at[0], at[1], *z);
-            voxel.fill() >= SURFACE && voxel.is_weft() == weft && usize::from(voxel.yarn()) == yarn
-        };
-        match face {
-            Face::Front => (0..size[2]).rev().find(holds),
-            Face::Back => (0..size[2]).find(holds),
-        }
-    };
-    // The border lies between the last stack on either side of it.
-    let known: Vec<Option<f32>> = (0..length)
-        .map(|position| {
-            let pair = [border + size[axis] - 1, border].map(|across| surface(across, position));
-            match pair {
-                [Some(a), Some(b)] => Some(0.5 * (a + b) as f32),
-                [a, b] => a.or(b).map(|z| z as f32),
-            }
-        })
-        .collect();
-    interpolate(&known).unwrap_or_else(|| vec![0.5 * size[2] as f32; length])
 }
 
 /// Fills gaps linearly, ends constantly; `None` when nothing is known.
@@ -159,5 +251,23 @@ mod tests {
         );
         assert_eq!(interpolate(&[None, None]), None);
         assert_eq!(interpolate(&[Some(1.0)]), Some(vec![1.0]));
+    }
+
+    #[test]
+    fn smoothing_keeps_levels_and_forgets_fibres() {
+        assert_eq!(smooth(&[2.0; 5], 1.5), vec![2.0; 5]);
+        let ragged: Vec<f32> = (0..40)
+            .map(|k| if k % 2 == 0 { 1.0 } else { -1.0 })
+            .collect();
+        let smoothed = smooth(&ragged, 2.0);
+        assert!(
+            smoothed[8..32].iter().all(|h| h.abs() < 1e-2),
+            "{smoothed:?}"
+        );
+        // Control: a slope is no fibre.
+        let slope: Vec<f32> = (0..40).map(|k| k as f32).collect();
+        let kept = smooth(&slope, 2.0);
+        assert!((8..32).all(|k| (kept[k] - k as f32).abs() < 1e-3));
+        assert_eq!(smooth(&ragged, 0.0), ragged);
     }
 }

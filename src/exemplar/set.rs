@@ -156,7 +156,8 @@ impl ExemplarSet {
             catalogue,
             exemplar,
             &volume,
-            self.grid.block,
+            &self.grid,
+            [&self.pair.warp, &self.pair.weft].map(YarnRecipe::full_extinction),
         );
         self.volumes[exemplar] = Some(volume);
     }

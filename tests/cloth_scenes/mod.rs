@@ -98,13 +98,27 @@ pub fn weave(design: &Design, settings: ClothSettings) -> ClothVolume {
 
 /// The cloth of a design, from these exemplars.
 pub fn weave_from(design: &Design, catalogue: Catalogue, settings: ClothSettings) -> ClothVolume {
+    weave_altered(design, catalogue, settings, |_| {})
+}
+
+/// The cloth of a design from exemplar sets that a test alters.
+pub fn weave_altered(
+    design: &Design,
+    catalogue: Catalogue,
+    settings: ClothSettings,
+    alter: impl Fn(&mut ExemplarSet),
+) -> ClothVolume {
     let job = Job::new();
     let catalogue = Arc::new(catalogue);
     let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, &job).unwrap();
     let classes = YarnClasses::new(design);
     let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).unwrap();
     let sets = (classes.pairs.iter())
-        .map(|pair| exemplars(&catalogue, pair, grid, &needed))
+        .map(|pair| {
+            let mut set = ExemplarSet::clone(&exemplars(&catalogue, pair, grid, &needed));
+            alter(&mut set);
+            Arc::new(set)
+        })
         .collect();
     let albedo = (design.yarns().iter())
         .map(|yarn| yarn.colour.to_linear())
