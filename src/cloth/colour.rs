@@ -54,7 +54,7 @@ impl ReflectanceCurve {
     /// The ω that gives a reflectance, held in 0..=1 where no ω does.
     pub fn albedo(&self, reflectance: f32) -> f32 {
         let last = NODES - 1;
-        if !(reflectance > self.reflectance[last]) {
+        if reflectance.is_nan() || reflectance <= self.reflectance[last] {
             return 0.0;
         }
         if reflectance >= self.reflectance[0] {

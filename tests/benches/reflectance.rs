@@ -1,6 +1,6 @@
 //! Measures the reflectance curves of all families: `presets/reflectance.ron`.
 //!
-//! `cargo bench -p pickglass --bench reflectance -- 4096` prints the table, measured with
+//! `cargo bench -p pickglass --bench reflectance -- 8192` prints the table, measured with
 //! so many paths a curve; `--write` puts it in the preset's place. Either happens only
 //! when every curve is there.
 
@@ -24,7 +24,7 @@ const ALPHAS: [f32; 6] = [0.01, 0.03, 0.08, 0.22, 0.45, 1.0];
 const LAYERS: u32 = 4;
 /// Paths a curve when no argument says; at the family's own roughness, which nearly every
 /// yarn has, [`OWN`] times as many.
-const USUAL_PATHS: u32 = 4096;
+const USUAL_PATHS: u32 = 8192;
 const OWN: u32 = 4;
 
 fn main() {
