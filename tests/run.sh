@@ -166,6 +166,11 @@ run_tests() {
     cargo test --release --workspace --quiet
 }
 
+# The table of asked and shown colours, which the tests alone do not print.
+print_colours() {
+    cargo test --release --package pickglass --test cloth_colour --quiet -- --nocapture
+}
+
 run_docs() {
     RUSTDOCFLAGS='-D warnings' cargo doc --release --workspace --no-deps --quiet
 }
@@ -177,6 +182,7 @@ check_all() {
     fi
     step "build" cargo build --release --workspace --quiet
     step "tests" run_tests
+    step "colours" print_colours
     step "documentation" run_docs
     if have Xvfb; then
         step "window" smoke_window

@@ -19,13 +19,77 @@ pub(super) struct Crossing {
     pub per_mm: [f32; 2],
     /// Found when first needed: most crossings are only passed over.
     around: Cell<Option<Neighbourhood>>,
+    /// Where the window keeps its shifts.
+    kept: Option<usize>,
+}
+
+/// The seams of a crossing that has any: what shifts its stacks.
+struct Seams<'c> {
+    cloth: &'c ClothVolume,
+    around: Neighbourhood,
+    kept: Option<usize>,
+    /// Weight of the front face's field at the height looked at.
+    front: f32,
+}
+
+impl Seams<'_> {
+    /// Shift of a stack, blended between the fields of the two faces.
+    #[inline]
+    fn shift(&self, x: usize, y: usize) -> f32 {
+        if self.front >= 1.0 {
+            self.field(Face::Front, x, y)
+        } else if self.front <= 0.0 {
+            self.field(Face::Back, x, y)
+        } else {
+            let (front, back) = (self.field(Face::Front, x, y), self.field(Face::Back, x, y));
+            self.front * front + (1.0 - self.front) * back
+        }
+    }
+
+    #[inline]
+    fn field(&self, face: Face, x: usize, y: usize) -> f32 {
+        let fix = &self.cloth.edge_fix;
+        let (bx, by) = fix.block_size();
+        let work_out = || -> Box<[f32]> {
+            let stacks = (0..bx * by).map(|i| fix.shift_at(&self.around, face, i % bx, i / bx));
+            stacks.collect()
+        };
+        match self
+            .kept
+            .and_then(|place| self.cloth.window.shifts(place, face))
+        {
+            Some(kept) => kept.get_or_init(work_out)[y * bx + x],
+            None => fix.shift_at(&self.around, face, x, y),
+        }
+    }
+
+    /// A direction sheared by the slope of the shift, taken towards the next stack (at the
+    /// far border: from the one before).
+    fn sheared(&self, here: f32, [x, y]: [usize; 2], direction: Vec3) -> Vec3 {
+        let [bx, by, _] = self.cloth.grid.block;
+        let slope_x = if x + 1 < bx {
+            self.shift(x + 1, y) - here
+        } else {
+            here - self.shift(x - 1, y)
+        };
+        let slope_y = if y + 1 < by {
+            self.shift(x, y + 1) - here
+        } else {
+            here - self.shift(x, y - 1)
+        };
+        let mm = self.cloth.grid.voxel_mm;
+        let rise = slope_x * direction.x * mm.z / mm.x + slope_y * direction.y * mm.z / mm.y;
+        (direction + Vec3::Z * rise)
+            .try_normalize()
+            .unwrap_or(direction)
+    }
 }
 
 impl ClothVolume {
     /// The crossing at (end, pick); `None` where there is no cloth.
     #[inline]
     pub(super) fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
-        if let Some((along_x, along_y, around)) = self.window.crossing(end, pick) {
+        if let Some((along_x, along_y, around, kept)) = self.window.crossing(end, pick) {
             let around = around?;
             return Some(Crossing {
                 end,
@@ -34,6 +98,7 @@ impl ClothVolume {
                 corner: [along_x.start, along_y.start],
                 per_mm: [along_x.per_mm, along_y.per_mm],
                 around: Cell::new(Some(around)),
+                kept: Some(kept),
             });
         }
         self.crossing_anywhere(end, pick)
@@ -55,6 +120,7 @@ impl ClothVolume {
                 by as f32 / self.picks.pitch(pick) as f32,
             ],
             around: Cell::new(None),
+            kept: None,
         })
     }
 
@@ -88,7 +154,6 @@ impl ClothVolume {
     #[inline]
     fn voxel_in(&self, crossing: &Crossing, x: usize, y: usize, z: f32) -> Voxel {
         let [bx, by, depth] = self.grid.block;
-        let weight = front_weight(z / depth as f32);
         // Blocks that only continue each other are not shifted.
         let mut seams = None;
         let mut height = z;
@@ -97,7 +162,15 @@ impl ClothVolume {
                 return Voxel::EMPTY;
             };
             if around.sides != [None; 4] {
-                let shift = self.blended_shift(&around, weight, x, y);
+                let front = front_weight(z / depth as f32);
+                let kept = crossing.kept;
+                let around = Seams {
+                    cloth: self,
+                    around,
+                    kept,
+                    front,
+                };
+                let shift = around.shift(x, y);
                 height -= shift;
                 seams = Some((around, shift));
             }
@@ -140,7 +213,7 @@ impl ClothVolume {
         if let Some((around, shift)) = &seams
             && self.settings.shear
         {
-            direction = self.sheared(around, weight, *shift, [x, y], direction);
+            direction = around.sheared(*shift, [x, y], direction);
         }
         let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
         Voxel {
@@ -149,47 +222,6 @@ impl ClothVolume {
             alpha: self.alpha[usize::from(yarn.0)],
             optics: u32::from(yarn.0),
         }
-    }
-
-    /// Shift of a stack, blended between the fields of the two faces.
-    #[inline]
-    fn blended_shift(&self, around: &Neighbourhood, front: f32, x: usize, y: usize) -> f32 {
-        let field = |face| self.edge_fix.shift_at(around, face, x, y);
-        if front >= 1.0 {
-            field(Face::Front)
-        } else if front <= 0.0 {
-            field(Face::Back)
-        } else {
-            front * field(Face::Front) + (1.0 - front) * field(Face::Back)
-        }
-    }
-
-    /// A direction sheared by the slope of the shift, taken towards the next stack (at the
-    /// far border: from the one before).
-    fn sheared(
-        &self,
-        around: &Neighbourhood,
-        front: f32,
-        here: f32,
-        [x, y]: [usize; 2],
-        direction: Vec3,
-    ) -> Vec3 {
-        let [bx, by, _] = self.grid.block;
-        let slope_x = if x + 1 < bx {
-            self.blended_shift(around, front, x + 1, y) - here
-        } else {
-            here - self.blended_shift(around, front, x - 1, y)
-        };
-        let slope_y = if y + 1 < by {
-            self.blended_shift(around, front, x, y + 1) - here
-        } else {
-            here - self.blended_shift(around, front, x, y - 1)
-        };
-        let mm = self.grid.voxel_mm;
-        let rise = slope_x * direction.x * mm.z / mm.x + slope_y * direction.y * mm.z / mm.y;
-        (direction + Vec3::Z * rise)
-            .try_normalize()
-            .unwrap_or(direction)
     }
 
     /// The voxel at a point of the cloth (mm), without a filter.

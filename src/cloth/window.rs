@@ -4,15 +4,18 @@
 //! again, kept for a rectangle of crossings. Outside it the same is found out on the spot.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use super::build::ClothVolume;
 use crate::design::YarnId;
-use crate::synthesis::{Neighbourhood, Side};
+use crate::synthesis::{Face, Neighbourhood, Side};
 
 /// Most crossings that are made ready: a picture of more is not close enough to need it.
 const MOST: usize = 1 << 20;
+/// Most crossings whose shifts are kept, once worked out: some 32 kB each.
+const MOST_SHIFTS: usize = 1 << 13;
 /// Threads kept beyond the rectangle, for yarns that bulge past it.
 const MARGIN: i64 = 8;
 
@@ -25,8 +28,12 @@ pub(super) struct Thread {
     pub per_mm: f32,
 }
 
+/// A crossing made ready: its threads, what stands around it (`None`: no cloth) and its
+/// place in the window.
+pub(super) type Ready = (Thread, Thread, Option<Neighbourhood>, usize);
+
 /// A rectangle of crossings made ready.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub(super) struct Window {
     end: i64,
     pick: i64,
@@ -34,6 +41,9 @@ pub(super) struct Window {
     height: usize,
     /// Row by row; `None` where there is no cloth.
     cells: Vec<Option<Neighbourhood>>,
+    /// Shifts of the stacks of each crossing, front and back, worked out when first
+    /// needed; none when there are too many crossings.
+    shifts: Vec<[OnceLock<Box<[f32]>>; 2]>,
     ends: Vec<Thread>,
     picks: Vec<Thread>,
     /// Yarns of the ends and picks, with margins; empty when they change along a thread.
@@ -55,9 +65,16 @@ impl Window {
     /// A crossing that was made ready: its threads and what stands around it. The inner
     /// `None`: there is no cloth.
     #[inline]
-    pub fn crossing(&self, end: i64, pick: i64) -> Option<(Thread, Thread, Option<Neighbourhood>)> {
+    pub fn crossing(&self, end: i64, pick: i64) -> Option<Ready> {
         let (x, y) = self.index(end, pick)?;
-        Some((self.ends[x], self.picks[y], self.cells[y * self.width + x]))
+        let place = y * self.width + x;
+        Some((self.ends[x], self.picks[y], self.cells[place], place))
+    }
+
+    /// Where the shifts of the crossing at a place are kept.
+    #[inline]
+    pub fn shifts(&self, place: usize, face: Face) -> Option<&OnceLock<Box<[f32]>>> {
+        Some(&self.shifts.get(place)?[face as usize])
     }
 
     /// The yarn of an end.
@@ -129,6 +146,13 @@ impl ClothVolume {
             width,
             height,
             cells,
+            shifts: (0..if width * height <= MOST_SHIFTS {
+                width * height
+            } else {
+                0
+            })
+                .map(|_| Default::default())
+                .collect(),
             ends: threads(&self.ends, end, width, bx),
             picks: threads(&self.picks, pick, height, by),
             warp: yarns(&self.maps.warp, &|end| self.maps.warp(end, 0), end, width),

@@ -276,7 +276,7 @@ mod tests {
             set("colour", "1")
                 .unwrap_err()
                 .to_string()
-                .contains("the dials are method")
+                .contains("the dials are denoise, method")
         );
     }
 
