@@ -75,3 +75,19 @@ fn a_weave_of_another_size_is_refused() {
     );
     assert!(blocks(&cloth) == before);
 }
+
+#[test]
+fn an_edit_that_needs_more_exemplars_says_so() {
+    // Plain weave shows one exemplar; a float in it needs others.
+    let plain = WeavePattern::from_fn(16, 16, |end, pick| (end + pick) % 2 == 0);
+    let mut settings = at_level(3);
+    settings.synthesis.seed = 77;
+    let mut cloth = weave(&cotton(plain.clone()), settings);
+    assert!(!cloth.unbuilt().contains(&true));
+    let edited = turned(&plain, &[(8, 8)]);
+    cloth.edit(&edited, &[(8, 8)], &Job::new()).unwrap();
+    assert!(cloth.unbuilt().contains(&true));
+    let anew = weave(&cotton(edited), settings);
+    assert!(!anew.unbuilt().contains(&true));
+    assert!(blocks(&cloth) == blocks(&anew));
+}

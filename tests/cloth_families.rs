@@ -4,7 +4,7 @@
 
 mod cloth_scenes;
 
-use cloth_scenes::{at_level, cotton, surface, weave};
+use cloth_scenes::{at_level, cotton, seen, weave};
 use pickglass::cloth::{ClothVolume, YarnClasses};
 use pickglass::design::{
     Design, Family, Grid, Lattice, Repeat, Sett, Srgb, Yarn, YarnId, YarnMap, YarnMaps,
@@ -42,14 +42,14 @@ fn wrong(cloth: &ClothVolume, design: &Design, size: i64) -> usize {
                 .wrap(end, pick, weave.ends(), weave.picks());
             let (i, j) = place.unwrap();
             for face in Face::ALL {
-                let YarnId(yarn) = if weave.get(i, j) == (face == Face::Front) {
+                let warp = weave.get(i, j) == (face == Face::Front);
+                let YarnId(yarn) = if warp {
                     design.warp_yarn(end, pick)
                 } else {
                     design.weft_yarn(end, pick)
                 };
-                let (x, y) = (cloth.ends().centre(end), cloth.picks().centre(pick));
-                let seen = surface(cloth, x as f32, y as f32, face);
-                wrong += usize::from(seen.is_none_or(|(_, v)| v.optics != u32::from(yarn)));
+                let found = seen(cloth, end, pick, face).0;
+                wrong += usize::from(found != Some((u32::from(yarn), warp)));
             }
         }
     }
@@ -83,7 +83,7 @@ fn each_pair_of_yarns_has_its_own_exemplars() {
 #[test]
 fn each_crossing_shows_its_own_yarn() {
     let design = mixed();
-    let cloth = weave(&design, at_level(1));
+    let cloth = weave(&design, at_level(1)).with_window(-6.0..6.0, -6.0..6.0);
     assert_eq!(wrong(&cloth, &design, 15), 0);
     // Control: with the wefts one pick further many are wrong.
     let maps = YarnMaps::orders(

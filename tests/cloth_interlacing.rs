@@ -6,24 +6,32 @@ mod cloth_scenes;
 
 use std::path::Path;
 
-use cloth_scenes::{at_level, preset, surface, weave};
+use cloth_scenes::{Seen, at_level, preset, seen, weave};
 use pickglass::cloth::ClothVolume;
 use pickglass::design::{Design, WeavePattern, YarnId};
 use pickglass::formats::wif;
 use pickglass::synthesis::Face;
 use rayon::prelude::*;
 
-/// Crossings at whose centre another yarn is seen than the drawdown says.
+/// What the middle of every crossing of a design shows, pick by pick.
+fn look(cloth: &ClothVolume, design: &Design, face: Face) -> Vec<(Option<Seen>, f32)> {
+    let (ends, picks) = (i64::from(design.ends()), i64::from(design.picks()));
+    (0..ends * picks)
+        .into_par_iter()
+        .map(|at| seen(cloth, at % ends, at / ends, face))
+        .collect()
+}
+
+/// Crossings that show another yarn than this drawdown says.
 fn wrong(
-    cloth: &ClothVolume,
+    looks: &[(Option<Seen>, f32)],
     design: &Design,
     weave: &WeavePattern,
     face: Face,
 ) -> Vec<(u32, u32)> {
-    let crossings: Vec<(u32, u32)> = (0..weave.picks())
-        .flat_map(|pick| (0..weave.ends()).map(move |end| (end, pick)))
-        .collect();
-    let is_wrong = |&(end, pick): &(u32, u32)| {
+    let crossings =
+        (0..weave.picks()).flat_map(|pick| (0..weave.ends()).map(move |end| (end, pick)));
+    let is_wrong = |&((end, pick), look): &((u32, u32), &(Option<Seen>, f32))| {
         let (i, j) = (i64::from(end), i64::from(pick));
         let warp = weave.get(end, pick) == (face == Face::Front);
         let YarnId(yarn) = if warp {
@@ -31,48 +39,39 @@ fn wrong(
         } else {
             design.weft_yarn(i, j)
         };
-        let (x, y) = (cloth.ends().centre(i), cloth.picks().centre(j));
-        let Some((_, seen)) = surface(cloth, x as f32, y as f32, face) else {
-            return true;
-        };
         // Yarns of one name on both sides still differ in the way they run.
-        let along_warp = seen.direction.y.abs() > seen.direction.x.abs();
-        along_warp != warp || seen.optics != u32::from(yarn)
+        look.0 != Some((u32::from(yarn), warp))
     };
-    crossings.into_par_iter().filter(is_wrong).collect()
+    let wrong = crossings.zip(looks).filter(is_wrong);
+    wrong.map(|(crossing, _)| crossing).collect()
 }
 
 fn expect_drawdown(design: &Design, level: u32) {
     let (pattern, cloth) = (design.weave(), woven(design, level));
-    let crossings = u64::from(pattern.ends()) * u64::from(pattern.picks());
-    for face in Face::ALL {
-        let wrong = wrong(&cloth, design, &pattern, face);
-        println!(
-            "{} {face:?}: {} of {crossings} wrong",
-            design.name,
-            wrong.len()
-        );
-        assert!(
-            wrong.is_empty(),
-            "{} {face:?}: {} of {crossings} crossings, first {:?}",
-            design.name,
-            wrong.len(),
-            &wrong[..wrong.len().min(8)]
-        );
-    }
     // Control: with one crossing of the drawdown turned over, that one fails.
     let (end, pick) = (pattern.ends() / 3, pattern.picks() / 2);
     let mut turned = pattern.clone();
     turned.set(end, pick, !pattern.get(end, pick));
     for face in Face::ALL {
-        assert_eq!(wrong(&cloth, design, &turned, face), [(end, pick)]);
+        let looks = look(&cloth, design, face);
+        let wrong_here = wrong(&looks, design, &pattern, face);
+        let least = looks.iter().fold(1.0f32, |least, look| least.min(look.1));
+        println!(
+            "{} {face:?}: {} of {} wrong, least share {least:.2}",
+            design.name,
+            wrong_here.len(),
+            looks.len()
+        );
+        let first = &wrong_here[..wrong_here.len().min(8)];
+        assert!(first.is_empty(), "{} {face:?}: {first:?} …", design.name);
+        assert_eq!(wrong(&looks, design, &turned, face), [(end, pick)]);
     }
 }
 
 fn woven(design: &Design, level: u32) -> ClothVolume {
     let cloth = weave(design, at_level(level));
-    let across = cloth.ends().repeat_mm().min(30.0) as f32;
-    let along = cloth.picks().repeat_mm().min(30.0) as f32;
+    let across = cloth.ends().repeat_mm() as f32;
+    let along = cloth.picks().repeat_mm() as f32;
     cloth.with_window(0.0..across, 0.0..along)
 }
 

@@ -110,17 +110,17 @@ fn violations(cloth: &ClothVolume, rays: u64, scale: f32) -> (u64, u64) {
 #[test]
 fn no_lookup_is_above_its_majorant() {
     for (name, design) in designs() {
-        let cloth = weave(&design, at_level(1)).with_window(0.0..6.0, 0.0..6.0);
-        let (lookups, above) = violations(&cloth, 4000, 1.0);
+        let cloth = weave(&design, at_level(2)).with_window(0.0..6.0, 0.0..6.0);
+        let (lookups, above) = violations(&cloth, 3000, 1.0);
         println!("{name}: {above} of {lookups} lookups");
-        assert!(lookups > 50_000, "{name}: {lookups} lookups");
+        assert!(lookups > 20_000, "{name}: {lookups} lookups");
         assert_eq!(above, 0, "{name}");
     }
 }
 
 #[test]
 fn leaving_out_an_allowance_is_noticed() {
-    let cloth = weave(&cotton(noise(48, 48)), at_level(1));
+    let cloth = weave(&cotton(noise(48, 48)), at_level(1)).with_window(0.0..6.0, 0.0..6.0);
     for allowance in [
         Allowance {
             shift: false,
@@ -143,16 +143,16 @@ fn leaving_out_an_allowance_is_noticed() {
 #[test]
 fn flights_and_shadows_are_counted_clean() {
     for (name, design) in designs() {
-        let cloth = weave(&design, at_level(1));
+        let cloth = weave(&design, at_level(2)).with_window(0.0..6.0, 0.0..6.0);
         let mut counters = Counters::default();
-        for k in 0..400 {
+        for k in 0..150 {
             let mut random = Random::new(12, 0, k);
             let ray = ray(&cloth, &mut random);
             cloth.collide(&ray, f32::INFINITY, &mut random, &mut counters);
-            let through = cloth.transmittance(&ray, 20.0, 0.0, &mut random, &mut counters);
+            let through = cloth.transmittance(&ray, 5.0, 0.0, &mut random, &mut counters);
             assert!((0.0..=1.0).contains(&through));
         }
-        assert!(counters.lookups > 1000, "{name}: {counters:?}");
+        assert!(counters.lookups > 300, "{name}: {counters:?}");
         assert_eq!(counters.majorant_violations, 0, "{name}");
         assert_eq!(counters.invalid_rays, 0, "{name}");
     }

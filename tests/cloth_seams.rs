@@ -167,7 +167,7 @@ fn expect_closed(level: u32, size: i64) {
         // Control: what closes the seams is that the heights are the blocks' own.
         assert!(shuffled[face].rms() > 0.8 * before, "{face}: {shuffled:?}");
     }
-    // The fit's own measure agrees.
+    // The fit's own measure agrees, as far as 15 profiles hold single fibres.
     let heights: Vec<EdgeHeights> = (cloth.sets().iter())
         .map(|set| set.heights.clone())
         .collect();
@@ -178,7 +178,7 @@ fn expect_closed(level: u32, size: i64) {
         .unwrap();
     println!("fit: {own:?}");
     for [before, after] in [own.front, own.back] {
-        assert!(after < before / 5.0, "{own:?}");
+        assert!(after < before / 3.0, "{own:?}");
     }
 }
 

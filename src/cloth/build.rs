@@ -289,6 +289,26 @@ impl ClothVolume {
         Ok(())
     }
 
+    /// Which exemplars the cloth shows that were not built, which an edit may bring about:
+    /// there it has holes until they are given to a new cloth.
+    pub fn unbuilt(&self) -> Vec<bool> {
+        let mut unbuilt: Vec<bool> = (0..self.catalogue.exemplars())
+            .map(|exemplar| self.sets.iter().any(|set| set.volumes[exemplar].is_none()))
+            .collect();
+        if unbuilt.contains(&true) {
+            let mut shown = vec![false; unbuilt.len()];
+            for end in 0..self.assignment.ends() {
+                for &block in self.assignment.column(end) {
+                    shown[usize::from(self.catalogue.place(block).exemplar)] = true;
+                }
+            }
+            for (unbuilt, shown) in unbuilt.iter_mut().zip(shown) {
+                *unbuilt &= shown;
+            }
+        }
+        unbuilt
+    }
+
     /// Takes over other colours: no synthesis.
     pub fn recolour(&mut self, albedo: Vec<Vec3>) {
         if albedo.len() == self.albedo.len() {
@@ -319,7 +339,19 @@ impl ClothVolume {
     #[inline]
     pub fn set_at(&self, end: i64, pick: i64) -> u16 {
         self.classes
-            .set(self.maps.warp(end, pick), self.maps.weft(end, pick))
+            .set(self.warp_yarn(end, pick), self.weft_yarn(end, pick))
+    }
+
+    /// The warp yarn of a crossing of the endless cloth.
+    #[inline]
+    pub(super) fn warp_yarn(&self, end: i64, pick: i64) -> YarnId {
+        self.maps.warp_on(self.lattice, end, pick)
+    }
+
+    /// The weft yarn of a crossing of the endless cloth.
+    #[inline]
+    pub(super) fn weft_yarn(&self, end: i64, pick: i64) -> YarnId {
+        self.maps.weft_on(self.lattice, end, pick)
     }
 
     /// Whether the warp is on the face at a crossing; `None` where there is no cloth.

@@ -321,8 +321,8 @@ impl MajorantWalk for HairWalk<'_> {
         let (pick, _) = layer.cloth.picks().locate(point.y.into());
         let step = root_step(voxel);
         let yarn = match weft {
-            true => layer.cloth.maps.weft(end, pick + step),
-            false => layer.cloth.maps.warp(end + step, pick),
+            true => layer.cloth.weft_yarn(end, pick + step),
+            false => layer.cloth.warp_yarn(end + step, pick),
         };
         if !layer
             .hairy

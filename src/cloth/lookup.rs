@@ -201,13 +201,13 @@ impl ClothVolume {
             let pick = crossing.pick + step;
             self.window
                 .weft(pick)
-                .unwrap_or_else(|| self.maps.weft(crossing.end, pick))
+                .unwrap_or_else(|| self.weft_yarn(crossing.end, pick))
         } else {
             let step = nearest_step(voxel.yarn(), place.x, weave.ends());
             let end = crossing.end + step;
             self.window
                 .warp(end)
-                .unwrap_or_else(|| self.maps.warp(end, crossing.pick))
+                .unwrap_or_else(|| self.warp_yarn(end, crossing.pick))
         };
         let mut direction = voxel.direction();
         if let Some((around, shift)) = &seams

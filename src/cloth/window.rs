@@ -155,10 +155,10 @@ impl ClothVolume {
                 .collect(),
             ends: threads(&self.ends, end, width, bx),
             picks: threads(&self.picks, pick, height, by),
-            warp: yarns(&self.maps.warp, &|end| self.maps.warp(end, 0), end, width),
+            warp: yarns(&self.maps.warp, &|end| self.warp_yarn(end, 0), end, width),
             weft: yarns(
                 &self.maps.weft,
-                &|pick| self.maps.weft(0, pick),
+                &|pick| self.weft_yarn(0, pick),
                 pick,
                 height,
             ),

@@ -242,24 +242,12 @@ impl Design {
     /// The warp yarn at a crossing of the endless cloth. Orders run on with a period of
     /// their own; yarns given by crossing repeat with the design's lattice.
     pub fn warp_yarn(&self, end: i64, pick: i64) -> YarnId {
-        let (end, pick) = self.place_of(&self.maps.warp, end, pick);
-        self.maps.warp(end, pick)
+        self.maps.warp_on(self.lattice, end, pick)
     }
 
     /// The weft yarn at a crossing of the endless cloth, as [`Design::warp_yarn`].
     pub fn weft_yarn(&self, end: i64, pick: i64) -> YarnId {
-        let (end, pick) = self.place_of(&self.maps.weft, end, pick);
-        self.maps.weft(end, pick)
-    }
-
-    fn place_of(&self, map: &YarnMap, end: i64, pick: i64) -> (i64, i64) {
-        let straight = self.lattice == Lattice::default();
-        if straight || map.order().is_some() {
-            return (end, pick);
-        }
-        let (ends, picks) = self.structure.size();
-        let place = self.lattice.wrap(end, pick, ends, picks);
-        place.map_or((end, pick), |(end, pick)| (end.into(), pick.into()))
+        self.maps.weft_on(self.lattice, end, pick)
     }
 
     /// Threads per length.

@@ -1,6 +1,7 @@
 //! Which yarn lies where: a warp and a weft yarn at every crossing (Zhao 2012 §5.1).
 
 use super::grid::Grid;
+use super::lattice::Lattice;
 use super::yarn::YarnId;
 
 /// The yarns of one direction.
@@ -31,6 +32,16 @@ impl YarnMap {
                     .unwrap_or(YarnId(0))
             }
             Self::Crossings(grid) => grid.get_wrapped(end, pick),
+        }
+    }
+
+    /// As [`YarnMap::at`], where yarns given by crossing repeat with a lattice.
+    fn on(&self, lattice: Lattice, end: i64, pick: i64, thread: i64) -> YarnId {
+        match self {
+            Self::Crossings(grid) if lattice != Lattice::default() => lattice
+                .wrap(end, pick, grid.ends(), grid.picks())
+                .map_or_else(|| grid.get_wrapped(end, pick), |(e, p)| grid.get(e, p)),
+            _ => self.at(end, pick, thread),
         }
     }
 
@@ -85,6 +96,19 @@ impl YarnMaps {
     /// The weft yarn at a crossing of the endless cloth.
     pub fn weft(&self, end: i64, pick: i64) -> YarnId {
         self.weft.at(end, pick, pick)
+    }
+
+    /// The warp yarn at a crossing of the endless cloth of a design with this lattice:
+    /// orders run on with periods of their own, yarns by crossing repeat with it.
+    #[inline]
+    pub fn warp_on(&self, lattice: Lattice, end: i64, pick: i64) -> YarnId {
+        self.warp.on(lattice, end, pick, end)
+    }
+
+    /// The weft yarn, as [`YarnMaps::warp_on`].
+    #[inline]
+    pub fn weft_on(&self, lattice: Lattice, end: i64, pick: i64) -> YarnId {
+        self.weft.on(lattice, end, pick, pick)
     }
 
     /// Whether a loom can do it: no yarn changes along its length.

@@ -3,7 +3,7 @@
 //! What the edge fixing needs (Zhao 2012 §5.5): where the top-most yarn lies along an
 //! edge, on each face. That is what is seen: the surface that a look straight at the face
 //! stops at, at optical depth 1. Single fibres are no part of an edge's shape, so heights
-//! are smoothed over about two of them; gaps are interpolated.
+//! are smoothed over about one of them; gaps are interpolated.
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::synthesis::{Catalogue, EdgeHeights, Face, Place, Side};
 use crate::yarn::{Direction, WeaveGeometry};
 
 /// Standard deviation of the smoothing along an edge, mm: fibres are 10–20 µm thick.
-const SMOOTHING_MM: f32 = 0.025;
+const SMOOTHING_MM: f32 = 0.015;
 
 /// Puts into `heights` what one exemplar's voxels show. `full` is the extinction of a
 /// voxel wholly inside fibre, 1/mm: of warps, of wefts.

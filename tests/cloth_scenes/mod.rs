@@ -166,6 +166,41 @@ pub fn surface(cloth: &ClothVolume, x: f32, y: f32, face: Face) -> Option<(f32, 
     None
 }
 
+/// A yarn seen at a crossing: its number and whether it runs along the warp.
+pub type Seen = (u32, bool);
+
+/// What most of the middle of a crossing shows, and the share of it that does.
+///
+/// The middle is a fifth of the crossing each way: at a single point one may look
+/// between the plies of a yarn, or past its fibres, at the yarn below.
+pub fn seen(cloth: &ClothVolume, end: i64, pick: i64, face: Face) -> (Option<Seen>, f32) {
+    const ACROSS: i32 = 3;
+    let mut votes: HashMap<Seen, u32> = HashMap::new();
+    for k in 0..ACROSS * ACROSS {
+        let place = |centre: f64, pitch: f64, step: i32| {
+            let aside = f64::from(step - ACROSS / 2) / f64::from(ACROSS - 1);
+            (centre + 0.2 * aside * pitch) as f32
+        };
+        let x = place(
+            cloth.ends().centre(end),
+            cloth.ends().pitch(end),
+            k % ACROSS,
+        );
+        let y = place(
+            cloth.picks().centre(pick),
+            cloth.picks().pitch(pick),
+            k / ACROSS,
+        );
+        if let Some((_, voxel)) = surface(cloth, x, y, face) {
+            let along_warp = voxel.direction.y.abs() > voxel.direction.x.abs();
+            *votes.entry((voxel.optics, along_warp)).or_insert(0) += 1;
+        }
+    }
+    let most = votes.into_iter().max_by_key(|&(seen, count)| (count, seen));
+    let share = most.map_or(0.0, |most| most.1 as f32 / (ACROSS * ACROSS) as f32);
+    (most.map(|most| most.0), share)
+}
+
 /// Transmittance along a ray by marching in small steps.
 pub fn marched(cloth: &ClothVolume, ray: &Ray, t_max: f32, step: f32) -> f64 {
     let mut depth = 0.0f64;
