@@ -65,7 +65,7 @@ fn ray(cloth: &ClothVolume, random: &mut Random) -> Ray {
         4 => towards.x = 0.0,
         _ => {}
     }
-    let towards = towards.normalize();
+    let towards = towards.normalize_or(Vec3::NEG_Z);
     let [x, y] = random.pair().map(|u| 6.0 * u - 0.5);
     let z = low + (high - low) * random.uniform();
     let mut origin = Vec3::new(x, y, z);
