@@ -188,7 +188,6 @@ fn rank_15_closes_the_seams_of_a_wavy_twill() {
 }
 
 #[test]
-#[ignore = "full resolution: half a minute"]
 fn rank_15_closes_the_seams_at_full_resolution() {
     expect_closed(0, 24);
 }

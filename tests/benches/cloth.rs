@@ -17,7 +17,7 @@ use pickglass::synthesis::{Catalogue, EdgeFix, NeighbourBits};
 fn timed<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let result = work();
-    println!("{what:<44} {:9.3} s", begun.elapsed().as_secs_f64());
+    println!("{what:<44} {:9.5} s", begun.elapsed().as_secs_f64());
     result
 }
 
