@@ -179,12 +179,6 @@ impl BlockMajorants {
         let start = (usize::from(set) * self.blocks + usize::from(block)) * length;
         &self.fill[start..start + length]
     }
-
-    /// The same majorants with every bound halved: wrong on purpose, for tests.
-    pub fn halved(mut self) -> Self {
-        self.fill.iter_mut().for_each(|fill| *fill /= 2);
-        self
-    }
 }
 
 fn raise(into: &mut [u8], from: &[u8]) {

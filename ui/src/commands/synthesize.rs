@@ -93,8 +93,7 @@ fn measure(opened: &Opened, synthesis: SynthesisSettings, job: &Job) -> anyhow::
         assignment: &assignment,
         randomisation,
     };
-    let maps = design.maps();
-    let set_at = |end, pick| classes.set(maps.warp(end, pick), maps.weft(end, pick));
+    let set_at = |end, pick| classes.set(design.warp_yarn(end, pick), design.weft_yarn(end, pick));
     let seams = placement.seam_rms(&edge_fix, &heights, set_at, job)?;
     Ok(Report {
         exemplar_seconds,
