@@ -3,7 +3,6 @@
 //! Zhao 2012 §5.1: a binary weave pattern, a warp and a weft yarn at every crossing,
 //! and colour and gloss of each yarn. A [`Design`] holds these and resolves, for any
 //! crossing of the endless cloth, which yarn is where and which lies on top.
-
 //!
 //! | file | holds |
 //! |---|---|
