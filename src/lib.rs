@@ -10,6 +10,7 @@ pub mod cloth;
 pub mod design;
 pub mod exemplar;
 pub mod formats;
+pub mod hash;
 pub mod job;
 pub mod render;
 pub mod still;

@@ -264,7 +264,7 @@ fn walks_cover_all_matter_from_any_side() {
     let size = UVec3::new(47, 33, 21);
     let grid = DenseGrid::from_fn(size, bounds, optics, Taps::Nearest, |cell| {
         let id = u64::from(cell.x + 64 * (cell.y + 64 * cell.z));
-        let matter = pickglass::render::random::mix(id).is_multiple_of(199);
+        let matter = pickglass::hash::mix(id).is_multiple_of(199);
         GridVoxel {
             sigma: if matter { 3.0 } else { 0.0 },
             direction: Vec3::Z,

@@ -4,21 +4,13 @@
 //! order of tiles: the n-th number of a sample of a pixel is always the same. The hash
 //! is splitmix64 (Steele, Lea, Flood 2014) over a key of the first three.
 
+use crate::hash::mix;
 use glam::Vec3;
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The largest number that [`Random`] returns: 1 − 2⁻²⁴.
 pub const LARGEST_BELOW_ONE: f32 = 1.0 - 1.0 / 16_777_216.0;
-
-/// splitmix64's finaliser: a bijection of 64 bits in which every bit of the input moves
-/// about half of the output.
-#[inline]
-pub fn mix(bits: u64) -> u64 {
-    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
-}
 
 /// The stream of uniform numbers in [0, 1) of one sample of one pixel.
 #[derive(Debug, Clone)]

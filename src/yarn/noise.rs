@@ -1,11 +1,10 @@
 //! Hash-based random numbers: the same for any order of evaluation.
 
+use crate::hash::mix;
+
 /// A 64-bit hash of a seed and a counter (splitmix64's finaliser).
 pub fn hash(seed: u64, counter: u64) -> u64 {
-    let mut z = seed.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
+    mix(seed.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15)))
 }
 
 /// A uniform number in 0..1 from a hash.

@@ -4,7 +4,7 @@
 pub mod peer;
 
 use glam::{UVec3, Vec3};
-use pickglass::render::random::mix;
+use pickglass::hash::mix;
 use pickglass::render::{Bounds, LightRig, RenderOutcome, RenderSettings, Sky, Sun};
 use pickglass::render::{Camera, Scatterer, render};
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
