@@ -14,6 +14,7 @@ fn everything() -> Design {
     let drawn = WeavePattern::parse("##.\n.##\n#.#").unwrap();
     let region = |name: &str, fill, origin| Region {
         name: name.to_owned(),
+        colour: Some(Srgb(200, 30, 4)),
         fill,
         origin,
     };

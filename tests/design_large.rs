@@ -21,6 +21,7 @@ fn timed<T>(what: &str, work: impl FnOnce() -> T) -> T {
 fn a_jacquard_of_thirty_million_crossings() {
     let region = |notation| Region {
         name: String::new(),
+        colour: None,
         fill: Fill::by_notation(notation).unwrap(),
         origin: (0, 0),
     };

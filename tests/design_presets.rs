@@ -54,6 +54,7 @@ fn regions(size: (u32, u32), fills: &[(&str, &str)], map: impl Fn(u32, u32) -> u
     let map = Grid::from_fn(size.0, size.1, map).unwrap();
     let palette = fills.iter().map(|&(name, notation)| Region {
         name: name.to_owned(),
+        colour: None,
         fill: Fill::by_notation(notation).unwrap(),
         origin: (0, 0),
     });

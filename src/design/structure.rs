@@ -4,6 +4,7 @@ use super::draft::Draft;
 use super::grid::Grid;
 use super::pattern::{SizeError, WeavePattern, check_size};
 use super::weaves::{NotationError, weave};
+use super::yarn::Srgb;
 
 /// A small weave to fill with: its notation if it has one, and its repeat.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,6 +49,8 @@ impl Fill {
 pub struct Region {
     /// What the designer calls it.
     pub name: String,
+    /// The colour that stands for it in the artwork, if it has one.
+    pub colour: Option<Srgb>,
     /// The weave that fills it.
     pub fill: Fill,
     /// The crossing (end, pick) where the weave's own (0, 0) lies.
@@ -321,6 +324,7 @@ mod tests {
         let map = Grid::from_fn(8, 4, |end, _| u16::from(end >= 4)).unwrap();
         let region = |name: &str, notation| Region {
             name: name.into(),
+            colour: None,
             fill: Fill::by_notation(notation).unwrap(),
             origin: (0, 0),
         };

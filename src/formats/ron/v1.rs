@@ -88,6 +88,8 @@ struct RegionsV1 {
 #[derive(Serialize, Deserialize)]
 struct RegionV1 {
     name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    colour: Option<String>,
     fill: FillV1,
     #[serde(default)]
     origin: (i32, i32),
@@ -307,6 +309,10 @@ fn structure(found: StructureV1, ends: u32, picks: u32) -> Result<Structure, Fau
             for region in found.palette.0 {
                 palette.push(Region {
                     name: region.name,
+                    colour: match region.colour {
+                        None => None,
+                        Some(text) => Some(colour("region", &text)?),
+                    },
                     fill: fill("region", region.fill)?,
                     origin: region.origin,
                 });
@@ -537,6 +543,7 @@ fn of_structure(structure: &Structure) -> Result<StructureV1, String> {
                 .map(|region| {
                     Ok(RegionV1 {
                         name: region.name.clone(),
+                        colour: region.colour.as_ref().map(Srgb::to_string),
                         fill: of_fill(&region.fill)?,
                         origin: region.origin,
                     })
