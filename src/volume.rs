@@ -552,7 +552,7 @@ impl MajorantWalk for GridWalk<'_> {
     }
 
     #[inline(always)]
-    fn voxel(&self, t: f32, tap: Vec3) -> Voxel {
+    fn voxel(&self, t: f32, tap: Vec3, _: f32) -> Voxel {
         let point = self.origin + self.direction * t;
         let grid = self.grid;
         // Rounding may put the point just outside its brick, whose majorant holds here.

@@ -175,8 +175,8 @@ impl MajorantWalk for LoweredWalk<'_> {
             ..stretch
         })
     }
-    fn voxel(&self, t: f32, tap: Vec3) -> Voxel {
-        self.0.voxel(t, tap)
+    fn voxel(&self, t: f32, tap: Vec3, least: f32) -> Voxel {
+        self.0.voxel(t, tap, least)
     }
 }
 
@@ -588,9 +588,9 @@ fn trilinear_taps_are_trilinear_in_the_mean() {
         if !(0.5..7.5).contains(&t) {
             continue;
         }
-        let (mean, error) = measure(20_000, |r| f64::from(walk.voxel(t, r.tap()).sigma));
+        let (mean, error) = measure(20_000, |r| f64::from(walk.voxel(t, r.tap(), 0.0).sigma));
         let exact = f64::from(t - 0.5 + 10.0 * 2.8 + 100.0 * 4.3 + 1.0);
         assert!((mean - exact).abs() < 5.0 * error, "{mean} {exact}");
-        assert!(stretch.majorant >= walk.voxel(t, Vec3::splat(0.999)).sigma);
+        assert!(stretch.majorant >= walk.voxel(t, Vec3::splat(0.999), 0.0).sigma);
     }
 }

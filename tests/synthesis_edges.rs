@@ -290,6 +290,8 @@ fn shifting_straight_from_the_neighbourhood_is_the_same() {
             let direct = fix.shift_at(&around, Face::Back, x, y);
             assert!((value - direct).abs() < 1e-4, "{value} {direct}");
             assert!(rank != Rank::Off || value == 0.0);
+            let all = fix.shifts(&around, Face::Back);
+            assert_eq!(all[y * BX + x].to_bits(), direct.to_bits());
         }
     }
 }

@@ -357,7 +357,10 @@ impl ClothVolume {
     /// Whether the warp is on the face at a crossing; `None` where there is no cloth.
     #[inline]
     pub fn warp_up(&self, end: i64, pick: i64) -> Option<bool> {
-        let block = self.assignment.at(end, pick)?;
+        let block = match self.window.block(end, pick) {
+            Some(known) => known?,
+            None => self.assignment.at(end, pick)?,
+        };
         Some(self.catalogue.key(block) & 1 == 1)
     }
 

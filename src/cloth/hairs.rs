@@ -8,8 +8,9 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 
 use super::build::ClothVolume;
-use crate::exemplar::CELL;
+use super::hair_cells::{HairCell, HairCells};
 use crate::exemplar::hairs::{HairPatch, root_step};
+use crate::exemplar::{CELL, cell_of};
 use crate::render::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
 use crate::yarn::{WeaveGeometry, YarnRecipe};
 
@@ -25,6 +26,8 @@ pub struct HairLayer<'a> {
     /// Height of the crowns on the front and on the back: where a weft and where a warp
     /// lies on that face, mm.
     crowns: [[f32; 2]; 2],
+    /// Cells of the front's and of the back's layer.
+    cells: [HairCells; 2],
     /// Extinction of a voxel wholly inside fibre: warp, weft.
     full: [f32; 2],
 }
@@ -43,9 +46,15 @@ impl<'a> HairLayer<'a> {
             cloth.picks().repeat_mm() as f32 / cloth.picks().threads() as f32,
         );
         let patch = HairPatch::new(&set.pair.warp, &set.pair.weft, pitch, 16)?;
+        let crowns = crowns(&set.pair.warp, &set.pair.weft, pitch);
+        let cell_mm = patch.voxel_mm.z * CELL as f32;
         Some(Self {
             cloth,
-            crowns: crowns(&set.pair.warp, &set.pair.weft, pitch),
+            crowns,
+            cells: crowns.map(|[a, b]| {
+                let lift = ((a - b).abs() / cell_mm).ceil() as usize;
+                HairCells::new(&patch, lift)
+            }),
             full: [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction),
             patch: Arc::new(patch),
             hairy,
@@ -53,13 +62,13 @@ impl<'a> HairLayer<'a> {
     }
 
     /// Height of the surface of a face at a place, mm: crowns blended between crossings.
-    fn surface(&self, face: usize, x: f32, y: f32) -> f32 {
+    fn surface(&self, face: usize, place: Vec3) -> f32 {
         let [weft, warp] = self.crowns[face];
         if (weft - warp).abs() < 1e-4 {
             return weft;
         }
-        let (end, u) = self.cloth.ends().locate(x.into());
-        let (pick, v) = self.cloth.picks().locate(y.into());
+        let (end, u) = self.cloth.ends().locate(place.x.into());
+        let (pick, v) = self.cloth.picks().locate(place.y.into());
         let (u, v) = (u as f32 - 0.5, v as f32 - 0.5);
         let (dx, dy) = (if u < 0.0 { -1 } else { 1 }, if v < 0.0 { -1 } else { 1 });
         let crown = |end, pick| {
@@ -115,11 +124,12 @@ pub struct HairWalk<'l> {
     spans: [(usize, f32, f32); 2],
     span: usize,
     t: f32,
-    cell: [i64; 3],
+    cell: [i32; 3],
     /// The cell of the stretch last given.
-    here: [i64; 3],
-    next: [f32; 3],
-    delta: [f32; 3],
+    here: [i32; 3],
+    /// The ray in cells of the present layer.
+    origin: Vec3,
+    direction: Vec3,
     ready: bool,
     left: u32,
 }
@@ -185,8 +195,8 @@ impl Medium for HairLayer<'_> {
             t: 0.0,
             cell: [0; 3],
             here: [0; 3],
-            next: [0.0; 3],
-            delta: [0.0; 3],
+            origin: Vec3::ZERO,
+            direction: Vec3::ZERO,
             ready: false,
             left: MAX_CELLS,
         }
@@ -201,52 +211,52 @@ impl HairWalk<'_> {
     fn set_up(&mut self) {
         let (face, start, _) = self.spans[self.span];
         let (corner, scale) = self.layer.frame(face);
-        let (origin, direction) = (
-            (self.ray.origin - corner) * scale,
-            self.ray.direction * scale,
-        );
-        let entry = origin + direction * start;
+        self.origin = (self.ray.origin - corner) * scale;
+        self.direction = self.ray.direction * scale;
         self.t = start;
-        for axis in 0..3 {
-            let cell = entry[axis].floor();
-            self.cell[axis] = cell as i64;
-            let d = direction[axis];
-            if d.abs() > 1e-12 {
-                let plane = if d > 0.0 { cell + 1.0 } else { cell };
-                self.next[axis] = (plane - origin[axis]) / d;
-                self.delta[axis] = (1.0 / d).abs();
-            } else {
-                self.next[axis] = f32::INFINITY;
-                self.delta[axis] = f32::INFINITY;
-            }
-        }
+        let entry = self.origin + self.direction * start;
+        self.cell = entry.to_array().map(cell_of);
         self.ready = true;
     }
 
-    /// Bound of the fill in the present cell.
-    fn bound(&self) -> u8 {
-        let [nx, ny, nz] = self.layer.patch.cells();
-        let [x, y, z] = self.cell;
-        // Heights above the crowns' lowest may belong to any lift between lowest and
-        // highest crown: bounds are widened by one cell, more is looked through here.
-        let (low, high) = self.layer.surface_range(self.spans[self.span].0);
-        let lift = ((high - low) / (self.layer.patch.voxel_mm.z * CELL as f32)).ceil() as i64;
-        let (x, y) = (
-            x.rem_euclid(nx as i64) as usize,
-            y.rem_euclid(ny as i64) as usize,
-        );
-        (z - lift..=z)
-            .filter(|z| (0..nz as i64).contains(z))
-            .map(|z| self.layer.patch.bound([x, y, z as usize]))
-            .max()
-            .unwrap_or(0)
+    /// Goes on to where the ray leaves the cube of cells that reaches `half` − 1 cells
+    /// beyond the present one; gives the distance.
+    #[inline]
+    fn leave_cube(&mut self, half: i32) -> f32 {
+        let mut nearest = (0, f32::INFINITY);
+        for axis in 0..3 {
+            let direction = self.direction[axis];
+            if direction.abs() > 1e-12 {
+                let side = if direction > 0.0 { half } else { 1 - half };
+                let plane = self.cell[axis].saturating_add(side) as f32;
+                let distance = (plane - self.origin[axis]) / direction;
+                if distance < nearest.1 {
+                    nearest = (axis, distance);
+                }
+            }
+        }
+        let (out, distance) = nearest;
+        let exit = self.origin + self.direction * distance.max(self.t);
+        for axis in 0..3 {
+            let cell = self.cell[axis];
+            self.cell[axis] = if axis != out {
+                // Rounding may not carry the ray out of the cube by another side.
+                let (low, high) = (cell.saturating_sub(half - 1), cell.saturating_add(half - 1));
+                cell_of(exit[axis]).clamp(low, high)
+            } else if self.direction[axis] > 0.0 {
+                cell.saturating_add(half)
+            } else {
+                cell.saturating_sub(half)
+            };
+        }
+        distance
     }
 }
 
 impl MajorantWalk for HairWalk<'_> {
     fn next_stretch(&mut self) -> Option<Stretch> {
         while self.span < 2 && self.left > 0 {
-            let (_, start, end) = self.spans[self.span];
+            let (face, start, end) = self.spans[self.span];
             if !self.ready {
                 if !(start < end) {
                     self.span += 1;
@@ -261,33 +271,16 @@ impl MajorantWalk for HairWalk<'_> {
                 self.ready = false;
                 continue;
             }
-            let fill = self.bound();
+            let HairCell { fill, reach } = self.layer.cells[face].at(self.cell);
             self.here = self.cell;
-            let axis = if self.next[0] < self.next[1] {
-                if self.next[0] < self.next[2] { 0 } else { 2 }
-            } else if self.next[1] < self.next[2] {
-                1
-            } else {
-                2
-            };
             let from = self.t;
-            self.t = self.next[axis].min(end).max(from);
-            let to = self.t;
-            if self.next[axis] < end {
-                let (_, scale) = self.layer.frame(self.spans[self.span].0);
-                self.cell[axis] += if self.ray.direction[axis] * scale[axis] > 0.0 {
-                    1
-                } else {
-                    -1
-                };
-                self.next[axis] += self.delta[axis];
-            }
-            if fill > 0 && to > from {
+            self.t = self.leave_cube(i32::from(reach).max(1)).min(end).max(from);
+            if fill > 0 && self.t > from {
                 let [warp, weft] = self.layer.full;
                 let majorant = f32::from(fill) * (1.0 / 255.0) * warp.max(weft);
                 return Some(Stretch {
                     start: from,
-                    end: to,
+                    end: self.t,
                     majorant,
                 });
             }
@@ -295,28 +288,32 @@ impl MajorantWalk for HairWalk<'_> {
         None
     }
 
-    fn voxel(&self, t: f32, _tap: Vec3) -> Voxel {
+    fn voxel(&self, t: f32, _tap: Vec3, least: f32) -> Voxel {
         let Some(&(face, ..)) = self.spans.get(self.span) else {
             return Voxel::EMPTY;
         };
         let layer = self.layer;
         let point = self.ray.at(t);
-        let over = point.z - layer.surface(face, point.x, point.y);
+        let over = point.z - layer.surface(face, point);
         let over = if face == 0 { over } else { -over };
         let place = Vec3::new(point.x, point.y, over + layer.patch.sink_mm) / layer.patch.voxel_mm;
         // The stretch lies in one cell; rounding may not carry it beside it.
-        let within = |place: f32, cell: i64| {
-            let start = (cell * CELL as i64) as f32;
-            place.clamp(start, start + CELL as f32 - 1e-2)
+        let within = |place: f32, low: i32, high: i32| {
+            let [low, high] = [low, high].map(|cell| (cell * CELL as i32) as f32);
+            place.clamp(low, high - 1e-2)
         };
-        let place = place
-            .with_x(within(place.x, self.here[0]))
-            .with_y(within(place.y, self.here[1]));
+        let [x, y, z] = self.here;
+        let place = Vec3::new(
+            within(place.x, x, x + 1),
+            within(place.y, y, y + 1),
+            within(place.z, z - layer.cells[face].lift, z + 1),
+        );
         let voxel = layer.patch.voxel(place);
-        if voxel.fill() == 0 {
+        let weft = voxel.is_weft();
+        let sigma = f32::from(voxel.fill()) * (1.0 / 255.0) * layer.full[usize::from(weft)];
+        if !(sigma > 0.0 && sigma >= least) {
             return Voxel::EMPTY;
         }
-        let weft = voxel.is_weft();
         let (end, _) = layer.cloth.ends().locate(point.x.into());
         let (pick, _) = layer.cloth.picks().locate(point.y.into());
         let step = root_step(voxel);
@@ -337,7 +334,7 @@ impl MajorantWalk for HairWalk<'_> {
             direction.z = -direction.z;
         }
         Voxel {
-            sigma: f32::from(voxel.fill()) * (1.0 / 255.0) * layer.full[usize::from(weft)],
+            sigma,
             direction,
             alpha: layer.cloth.alpha[usize::from(yarn.0)],
             optics: u32::from(yarn.0),

@@ -5,11 +5,13 @@ use std::cell::Cell;
 use glam::Vec3;
 
 use super::build::ClothVolume;
+use super::window::StackShift;
+use crate::exemplar::{BrickVolume, cell_of};
 use crate::render::Voxel;
 use crate::synthesis::{BlockRef, Face, Neighbourhood};
 
 /// A crossing of the endless cloth, made ready for lookups.
-pub(super) struct Crossing {
+pub(super) struct Crossing<'c> {
     pub end: i64,
     pub pick: i64,
     pub block: BlockRef,
@@ -21,74 +23,26 @@ pub(super) struct Crossing {
     around: Cell<Option<Neighbourhood>>,
     /// Where the window keeps its shifts.
     kept: Option<usize>,
+    /// The voxels it copies, found when first needed.
+    source: Cell<Option<Source<'c>>>,
 }
 
-/// The seams of a crossing that has any: what shifts its stacks.
-struct Seams<'c> {
-    cloth: &'c ClothVolume,
-    around: Neighbourhood,
-    kept: Option<usize>,
-    /// Weight of the front face's field at the height looked at.
-    front: f32,
-}
-
-impl Seams<'_> {
-    /// Shift of a stack, blended between the fields of the two faces.
-    #[inline]
-    fn shift(&self, x: usize, y: usize) -> f32 {
-        if self.front >= 1.0 {
-            self.field(Face::Front, x, y)
-        } else if self.front <= 0.0 {
-            self.field(Face::Back, x, y)
-        } else {
-            let (front, back) = (self.field(Face::Front, x, y), self.field(Face::Back, x, y));
-            self.front * front + (1.0 - self.front) * back
-        }
-    }
-
-    #[inline]
-    fn field(&self, face: Face, x: usize, y: usize) -> f32 {
-        let fix = &self.cloth.edge_fix;
-        let (bx, by) = fix.block_size();
-        let work_out = || -> Box<[f32]> {
-            let stacks = (0..bx * by).map(|i| fix.shift_at(&self.around, face, i % bx, i / bx));
-            stacks.collect()
-        };
-        match self
-            .kept
-            .and_then(|place| self.cloth.window.shifts(place, face))
-        {
-            Some(kept) => kept.get_or_init(work_out)[y * bx + x],
-            None => fix.shift_at(&self.around, face, x, y),
-        }
-    }
-
-    /// A direction sheared by the slope of the shift, taken towards the next stack (at the
-    /// far border: from the one before).
-    fn sheared(&self, here: f32, [x, y]: [usize; 2], direction: Vec3) -> Vec3 {
-        let [bx, by, _] = self.cloth.grid.block;
-        let slope_x = if x + 1 < bx {
-            self.shift(x + 1, y) - here
-        } else {
-            here - self.shift(x - 1, y)
-        };
-        let slope_y = if y + 1 < by {
-            self.shift(x, y + 1) - here
-        } else {
-            here - self.shift(x, y - 1)
-        };
-        let mm = self.cloth.grid.voxel_mm;
-        let rise = slope_x * direction.x * mm.z / mm.x + slope_y * direction.y * mm.z / mm.y;
-        (direction + Vec3::Z * rise)
-            .try_normalize()
-            .unwrap_or(direction)
-    }
+/// The voxels of a block.
+#[derive(Clone, Copy)]
+struct Source<'c> {
+    volume: &'c BrickVolume,
+    /// Lowest voxel of the block in its exemplar.
+    corner: [usize; 2],
+    /// Column and row of the block in its exemplar.
+    place: [i32; 2],
+    /// Ends and picks of the exemplar.
+    repeat: [i32; 2],
 }
 
 impl ClothVolume {
     /// The crossing at (end, pick); `None` where there is no cloth.
     #[inline]
-    pub(super) fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
+    pub(super) fn crossing(&self, end: i64, pick: i64) -> Option<Crossing<'_>> {
         if let Some((along_x, along_y, around, kept)) = self.window.crossing(end, pick) {
             let around = around?;
             return Some(Crossing {
@@ -99,12 +53,13 @@ impl ClothVolume {
                 per_mm: [along_x.per_mm, along_y.per_mm],
                 around: Cell::new(Some(around)),
                 kept: Some(kept),
+                source: Cell::new(None),
             });
         }
         self.crossing_anywhere(end, pick)
     }
 
-    fn crossing_anywhere(&self, end: i64, pick: i64) -> Option<Crossing> {
+    fn crossing_anywhere(&self, end: i64, pick: i64) -> Option<Crossing<'_>> {
         let block = self.placement().block(end, pick)?;
         let [bx, by, _] = self.grid.block;
         Some(Crossing {
@@ -121,6 +76,7 @@ impl ClothVolume {
             ],
             around: Cell::new(None),
             kept: None,
+            source: Cell::new(None),
         })
     }
 
@@ -134,26 +90,67 @@ impl ClothVolume {
         crossing.around.get()
     }
 
-    /// The voxel at a point of a crossing given in voxels (x and y from the crossing's
-    /// corner, z from the exemplar's floor), which may lie just across its border.
-    pub(super) fn voxel_near(&self, crossing: &Crossing, point: Vec3) -> Voxel {
-        let [bx, by, _] = self.grid.block;
-        let (x, y) = (point.x.floor() as i64, point.y.floor() as i64);
-        let (across, along) = (x.div_euclid(bx as i64), y.div_euclid(by as i64));
-        if (across, along) == (0, 0) {
-            return self.voxel_in(crossing, x as usize, y as usize, point.z);
+    /// The voxels of a crossing's block; `None` where its exemplar is not built.
+    #[inline]
+    fn source<'c>(&'c self, crossing: &Crossing<'c>) -> Option<Source<'c>> {
+        if let Some(source) = crossing.source.get() {
+            return Some(source);
         }
-        let Some(beside) = self.crossing(crossing.end + across, crossing.pick + along) else {
+        let place = self.catalogue.place(crossing.block.block);
+        let exemplar = usize::from(place.exemplar);
+        let volume = self.sets[usize::from(crossing.block.set)].volumes[exemplar].as_deref()?;
+        let weave = &self.catalogue.weaves()[exemplar];
+        let [bx, by, _] = self.grid.block;
+        let source = Source {
+            volume,
+            corner: [usize::from(place.x) * bx, usize::from(place.y) * by],
+            place: [i32::from(place.x), i32::from(place.y)],
+            repeat: [weave.ends() as i32, weave.picks() as i32],
+        };
+        crossing.source.set(Some(source));
+        Some(source)
+    }
+
+    /// The voxel at a point of a crossing given in voxels (x and y from the crossing's
+    /// corner, z from the exemplar's floor), which may lie up to a block across its border.
+    /// One whose `sigma` is below `least` may be given as empty.
+    #[inline]
+    pub(super) fn voxel_near<'c>(
+        &'c self,
+        crossing: &Crossing<'c>,
+        point: Vec3,
+        least: f32,
+    ) -> Voxel {
+        let [bx, by, _] = self.grid.block.map(|voxels| voxels as i32);
+        let (x, y) = (cell_of(point.x), cell_of(point.y));
+        let side = |place: i32, block: i32| i32::from(place >= block) - i32::from(place < 0);
+        let (across, along) = (side(x, bx), side(y, by));
+        if (across, along) == (0, 0) {
+            return self.voxel_in(crossing, [x as usize, y as usize], point.z, least);
+        }
+        let beside = (
+            crossing.end + i64::from(across),
+            crossing.pick + i64::from(along),
+        );
+        let Some(beside) = self.crossing(beside.0, beside.1) else {
             return Voxel::EMPTY;
         };
-        let (x, y) = (x.rem_euclid(bx as i64), y.rem_euclid(by as i64));
-        self.voxel_in(&beside, x as usize, y as usize, point.z)
+        let within =
+            |place: i32, side: i32, block: i32| (place - side * block).clamp(0, block - 1) as usize;
+        let stack = [within(x, across, bx), within(y, along, by)];
+        self.voxel_in(&beside, stack, point.z, least)
     }
 
     /// The voxel of stack (x, y) of a crossing at height `z` (voxels).
     #[inline]
-    fn voxel_in(&self, crossing: &Crossing, x: usize, y: usize, z: f32) -> Voxel {
-        let [bx, by, depth] = self.grid.block;
+    fn voxel_in<'c>(
+        &'c self,
+        crossing: &Crossing<'c>,
+        [x, y]: [usize; 2],
+        z: f32,
+        least: f32,
+    ) -> Voxel {
+        let depth = self.grid.block[2] as f32;
         // Blocks that only continue each other are not shifted.
         let mut seams = None;
         let mut height = z;
@@ -162,66 +159,142 @@ impl ClothVolume {
                 return Voxel::EMPTY;
             };
             if around.sides != [None; 4] {
-                let front = front_weight(z / depth as f32);
-                let kept = crossing.kept;
-                let around = Seams {
-                    cloth: self,
-                    around,
-                    kept,
-                    front,
-                };
-                let shift = around.shift(x, y);
-                height -= shift;
-                seams = Some((around, shift));
+                let front = front_weight(z / depth);
+                let stack = self.stack_shift(&around, crossing.kept, front, [x, y]);
+                height -= stack.shift;
+                seams = Some(stack.rise);
             }
         }
-        if !(height >= 0.0 && height < depth as f32) {
+        if !(height >= 0.0 && height < depth) {
             return Voxel::EMPTY;
         }
-        let place = self.catalogue.place(crossing.block.block);
-        let set = &self.sets[usize::from(crossing.block.set)];
-        let Some(volume) = &set.volumes[usize::from(place.exemplar)] else {
+        let Some(source) = self.source(crossing) else {
             return Voxel::EMPTY;
         };
-        let voxel = volume.get(
-            usize::from(place.x) * bx + x,
-            usize::from(place.y) * by + y,
-            height as usize,
-        );
-        if voxel.fill() == 0 {
+        let voxel = source
+            .volume
+            .get(source.corner[0] + x, source.corner[1] + y, height as usize);
+        let weft = voxel.is_weft();
+        let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
+        let sigma = f32::from(voxel.fill()) * (1.0 / 255.0) * full;
+        if !(sigma > 0.0 && sigma >= least) {
             return Voxel::EMPTY;
         }
 
         // The yarn byte names a column or row of the exemplar: the same step from this
         // crossing is an end or pick of the cloth, so a bulging yarn keeps its own colour.
-        let weft = voxel.is_weft();
-        let weave = &self.catalogue.weaves()[usize::from(place.exemplar)];
+        let across = usize::from(weft);
+        let step = i64::from(nearest_step(
+            voxel.yarn(),
+            source.place[across],
+            source.repeat[across],
+        ));
         let yarn = if weft {
-            let step = nearest_step(voxel.yarn(), place.y, weave.picks());
             let pick = crossing.pick + step;
             self.window
                 .weft(pick)
                 .unwrap_or_else(|| self.weft_yarn(crossing.end, pick))
         } else {
-            let step = nearest_step(voxel.yarn(), place.x, weave.ends());
             let end = crossing.end + step;
             self.window
                 .warp(end)
                 .unwrap_or_else(|| self.warp_yarn(end, crossing.pick))
         };
         let mut direction = voxel.direction();
-        if let Some((around, shift)) = &seams
+        if let Some(rise) = seams
             && self.settings.shear
         {
-            direction = around.sheared(*shift, [x, y], direction);
+            direction = self.sheared(rise, direction);
         }
-        let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
         Voxel {
-            sigma: f32::from(voxel.fill()) * (1.0 / 255.0) * full,
+            sigma,
             direction,
             alpha: self.alpha[usize::from(yarn.0)],
             optics: u32::from(yarn.0),
         }
+    }
+
+    /// Shift of a stack, blended between the fields of the two faces; `front` is the
+    /// weight of the front's.
+    #[inline]
+    fn stack_shift(
+        &self,
+        around: &Neighbourhood,
+        kept: Option<usize>,
+        front: f32,
+        stack: [usize; 2],
+    ) -> StackShift {
+        let field = |face| self.field(around, kept, face, stack);
+        if front >= 1.0 {
+            field(Face::Front)
+        } else if front <= 0.0 {
+            field(Face::Back)
+        } else {
+            let (upper, lower) = (field(Face::Front), field(Face::Back));
+            let blend = |upper: f32, lower: f32| front * upper + (1.0 - front) * lower;
+            StackShift {
+                shift: blend(upper.shift, lower.shift),
+                rise: [0, 1].map(|axis| blend(upper.rise[axis], lower.rise[axis])),
+            }
+        }
+    }
+
+    #[inline]
+    fn field(
+        &self,
+        around: &Neighbourhood,
+        kept: Option<usize>,
+        face: Face,
+        [x, y]: [usize; 2],
+    ) -> StackShift {
+        match kept.and_then(|place| self.window.shifts(place, face)) {
+            Some(kept) => {
+                let width = self.edge_fix.block_size().0;
+                kept.get_or_init(|| self.all_shifts(around, face))[y * width + x]
+            }
+            None => self.with_rise(|x, y| self.edge_fix.shift_at(around, face, x, y), x, y),
+        }
+    }
+
+    #[cold]
+    fn all_shifts(&self, around: &Neighbourhood, face: Face) -> Box<[StackShift]> {
+        let (bx, by) = self.edge_fix.block_size();
+        let shifts = self.edge_fix.shifts(around, face);
+        let known = |x: usize, y: usize| shifts[y * bx + x];
+        (0..bx * by)
+            .map(|i| self.with_rise(known, i % bx, i / bx))
+            .collect()
+    }
+
+    #[inline]
+    fn with_rise(&self, shift_at: impl Fn(usize, usize) -> f32, x: usize, y: usize) -> StackShift {
+        let (bx, by) = self.edge_fix.block_size();
+        let here = shift_at(x, y);
+        let across = if x + 1 < bx {
+            shift_at(x + 1, y) - here
+        } else {
+            here - shift_at(x.saturating_sub(1), y)
+        };
+        let along = if y + 1 < by {
+            shift_at(x, y + 1) - here
+        } else {
+            here - shift_at(x, y.saturating_sub(1))
+        };
+        StackShift {
+            shift: here,
+            rise: [across, along],
+        }
+    }
+
+    /// A direction sheared by the slope of the shift.
+    #[inline]
+    fn sheared(&self, rise: [f32; 2], direction: Vec3) -> Vec3 {
+        let mm = self.grid.voxel_mm;
+        let slope = [rise[0] * mm.z / mm.x, rise[1] * mm.z / mm.y];
+        let lift = slope[0] * direction.x + slope[1] * direction.y;
+        (direction + Vec3::Z * lift)
+            .try_normalize()
+            .unwrap_or(direction)
     }
 
     /// The voxel at a point of the cloth (mm), without a filter.
@@ -237,7 +310,7 @@ impl ClothVolume {
             ((point.y - crossing.corner[1]) * crossing.per_mm[1]).clamp(0.0, by as f32 - 0.01),
             (point.z - self.grid.floor_mm()) / self.grid.voxel_mm.z,
         );
-        self.voxel_near(&crossing, local)
+        self.voxel_near(&crossing, local, 0.0)
     }
 }
 
@@ -250,11 +323,12 @@ fn front_weight(fraction: f32) -> f32 {
 
 /// Steps from column (or row) `from` to `to` of a repeat of `period`, the short way.
 #[inline]
-fn nearest_step(to: u8, from: u16, period: u32) -> i64 {
-    let period = i64::from(period);
-    let step = (i64::from(to) - i64::from(from)).rem_euclid(period);
+fn nearest_step(to: u8, from: i32, period: i32) -> i32 {
+    let step = i32::from(to) - from;
     if 2 * step > period {
         step - period
+    } else if 2 * step <= -period {
+        step + period
     } else {
         step
     }

@@ -10,6 +10,7 @@
 
 mod build;
 pub mod colour;
+mod hair_cells;
 mod hairs;
 mod lookup;
 mod walk;

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::build::ClothVolume;
 use super::lookup::Crossing;
-use crate::exemplar::CELL;
+use crate::exemplar::{CELL, cell_of};
 use crate::render::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
 
 /// Half the side of the largest cloth, mm: rays leave it at last.
@@ -21,7 +21,7 @@ pub struct ClothWalk<'a> {
     t_end: f32,
     end: i64,
     pick: i64,
-    crossing: Option<Crossing>,
+    crossing: Option<Crossing<'a>>,
     cells: Cells,
     left: u32,
     /// Set before the first crossing is entered.
@@ -154,7 +154,7 @@ impl ClothWalk<'_> {
         let entry = origin + direction * self.t;
         for axis in 0..3 {
             let (o, d) = (origin[axis], direction[axis]);
-            let cell = (entry[axis].floor() as i32).clamp(0, count[axis] as i32 - 1);
+            let cell = cell_of(entry[axis]).clamp(0, count[axis] as i32 - 1);
             self.cells.cell[axis] = cell;
             if d.abs() > 1e-12 {
                 let up = d > 0.0;
@@ -241,7 +241,7 @@ impl MajorantWalk for ClothWalk<'_> {
     }
 
     #[inline]
-    fn voxel(&self, t: f32, tap: Vec3) -> Voxel {
+    fn voxel(&self, t: f32, tap: Vec3, least: f32) -> Voxel {
         let Some(crossing) = &self.crossing else {
             return Voxel::EMPTY;
         };
@@ -257,6 +257,6 @@ impl MajorantWalk for ClothWalk<'_> {
         if cloth.settings.tap {
             local += tap - 0.5;
         }
-        cloth.voxel_near(crossing, local)
+        cloth.voxel_near(crossing, local, least)
     }
 }

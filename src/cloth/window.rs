@@ -14,8 +14,8 @@ use crate::synthesis::{Face, Neighbourhood, Side};
 
 /// Most crossings that are made ready: a picture of more is not close enough to need it.
 const MOST: usize = 1 << 20;
-/// Most crossings whose shifts are kept, once worked out: some 32 kB each.
-const MOST_SHIFTS: usize = 1 << 13;
+/// Most memory in which shifts are kept, once worked out, bytes.
+const MOST_SHIFTS: usize = 1 << 28;
 /// Threads kept beyond the rectangle, for yarns that bulge past it.
 const MARGIN: i64 = 8;
 
@@ -27,6 +27,18 @@ pub(super) struct Thread {
     /// Voxels a mm across it.
     pub per_mm: f32,
 }
+
+/// How far a stack of voxels is shifted, and how much further the stacks beside it are.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct StackShift {
+    /// Shift, voxels upwards.
+    pub shift: f32,
+    /// Rise towards the next stack in x and in y (at the far border: from the one before).
+    pub rise: [f32; 2],
+}
+
+/// The shifts of all stacks of a crossing under one face's field, once worked out.
+pub(super) type KeptShifts = OnceLock<Box<[StackShift]>>;
 
 /// A crossing made ready: its threads, what stands around it (`None`: no cloth) and its
 /// place in the window.
@@ -43,7 +55,7 @@ pub(super) struct Window {
     cells: Vec<Option<Neighbourhood>>,
     /// Shifts of the stacks of each crossing, front and back, worked out when first
     /// needed; none when there are too many crossings.
-    shifts: Vec<[OnceLock<Box<[f32]>>; 2]>,
+    shifts: Vec<[KeptShifts; 2]>,
     ends: Vec<Thread>,
     picks: Vec<Thread>,
     /// Yarns of the ends and picks, with margins; empty when they change along a thread.
@@ -71,9 +83,17 @@ impl Window {
         Some((self.ends[x], self.picks[y], self.cells[place], place))
     }
 
+    /// The block shown at a crossing that was made ready.
+    #[inline]
+    pub fn block(&self, end: i64, pick: i64) -> Option<Option<u16>> {
+        let (x, y) = self.index(end, pick)?;
+        let around = self.cells[y * self.width + x];
+        Some(around.map(|around| around.centre.block))
+    }
+
     /// Where the shifts of the crossing at a place are kept.
     #[inline]
-    pub fn shifts(&self, place: usize, face: Face) -> Option<&OnceLock<Box<[f32]>>> {
+    pub fn shifts(&self, place: usize, face: Face) -> Option<&KeptShifts> {
         Some(&self.shifts.get(place)?[face as usize])
     }
 
@@ -140,19 +160,16 @@ impl ClothVolume {
                     Vec::new()
                 }
             };
+        let bytes = 2 * bx * by * size_of::<StackShift>();
+        let all_kept = width * height * bytes <= MOST_SHIFTS;
+        let kept = if all_kept { width * height } else { 0 };
         Window {
             end,
             pick,
             width,
             height,
             cells,
-            shifts: (0..if width * height <= MOST_SHIFTS {
-                width * height
-            } else {
-                0
-            })
-                .map(|_| Default::default())
-                .collect(),
+            shifts: (0..kept).map(|_| Default::default()).collect(),
             ends: threads(&self.ends, end, width, bx),
             picks: threads(&self.picks, pick, height, by),
             warp: yarns(&self.maps.warp, &|end| self.warp_yarn(end, 0), end, width),

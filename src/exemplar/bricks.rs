@@ -10,6 +10,14 @@ const EMPTY: u32 = u32::MAX;
 /// Set in the yarn byte of a weft.
 const WEFT: u8 = 0x80;
 
+/// The cell that holds a coordinate: the whole number at or below it, held in range; NaN
+/// gives 0. (`f32::floor` is a library call on processors without SSE 4.1.)
+#[inline(always)]
+pub(crate) fn cell_of(coordinate: f32) -> i32 {
+    let towards_zero = coordinate as i32;
+    towards_zero.saturating_sub(i32::from(towards_zero as f32 > coordinate))
+}
+
 /// One voxel in four bytes: fill fraction, direction, yarn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
@@ -168,6 +176,15 @@ impl BrickVolume {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_hold_their_coordinates() {
+        for (coordinate, cell) in [(0.0, 0), (-0.0, 0), (-1e-9, -1), (-1.0, -1), (2.999, 2)] {
+            assert_eq!(cell_of(coordinate), cell, "{coordinate}");
+        }
+        assert_eq!(cell_of(f32::NEG_INFINITY), i32::MIN);
+        assert_eq!((cell_of(f32::INFINITY), cell_of(f32::NAN)), (i32::MAX, 0));
+    }
 
     #[test]
     fn voxels_pack_and_unpack() {

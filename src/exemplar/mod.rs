@@ -17,6 +17,7 @@ mod set;
 mod store;
 pub mod voxelise;
 
+pub(crate) use bricks::cell_of;
 pub use bricks::{BRICK, BrickVolume, PackedVoxel};
 pub use direction::{decode_direction, encode_direction};
 pub use majorants::{Allowance, BlockMajorants, CELL};

@@ -129,5 +129,7 @@ pub trait MajorantWalk {
 
     /// The medium at distance `t`, which lies on the current stretch. `tap` holds uniform
     /// numbers in [0,1) for a stochastic one-tap filter; a medium without one ignores them.
-    fn voxel(&self, t: f32, tap: Vec3) -> Voxel;
+    /// Where `sigma` is below `least` (1/mm) the caller has no use for the rest, and the
+    /// answer may be [`Voxel::EMPTY`].
+    fn voxel(&self, t: f32, tap: Vec3, least: f32) -> Voxel;
 }

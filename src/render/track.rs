@@ -114,8 +114,10 @@ impl<M: Medium> Scatterer for M {
                     break;
                 }
                 t = next;
-                let voxel = walk.voxel(t, random.tap());
+                let tap = random.tap();
                 let [accept, flight] = random.pair();
+                // Projected areas are at most 1: less than this cannot be accepted.
+                let voxel = walk.voxel(t, tap, accept * stretch.majorant);
                 steps += 1;
                 if voxel.sigma > 0.0 {
                     let share = voxel.sigma * mean_free_path;
@@ -165,7 +167,7 @@ impl<M: Medium> Scatterer for M {
                     break;
                 }
                 t = next;
-                let voxel = walk.voxel(t, random.tap());
+                let voxel = walk.voxel(t, random.tap(), 0.0);
                 let [survive, flight] = random.pair();
                 steps += 1;
                 if voxel.sigma > 0.0 {
@@ -274,14 +276,14 @@ impl<A: Scatterer, B: Scatterer> Scatterer for Both<A, B> {
         random: &mut Random,
         counters: &mut Counters,
     ) -> f32 {
-        let second = self
-            .1
+        let first = self
+            .0
             .transmittance(ray, t_max, roulette_below, random, counters);
-        if second == 0.0 {
+        if first == 0.0 {
             return 0.0;
         }
-        let below = (roulette_below / second).min(1.0);
-        second * self.0.transmittance(ray, t_max, below, random, counters)
+        let below = (roulette_below / first).min(1.0);
+        first * self.1.transmittance(ray, t_max, below, random, counters)
     }
 
     fn albedo(&self, optics: u32) -> Vec3 {

@@ -258,6 +258,26 @@ impl EdgeFix {
         sum
     }
 
+    /// [`EdgeFix::shift_at`] of every stack of the block, x fastest.
+    pub fn shifts(&self, around: &Neighbourhood, face: Face) -> Vec<f32> {
+        let mut shifts = vec![0.0; self.bx * self.by];
+        if self.is_off() {
+            return shifts;
+        }
+        for side in Side::ALL {
+            let Some(other) = self.across_seam(around, face, side) else {
+                continue;
+            };
+            let own = self.edge(around.centre, face, side);
+            let pairs = other.iter().zip(own);
+            let seam: Vec<f32> = pairs.map(|(other, own)| 0.5 * (other - own)).collect();
+            for (i, shift) in shifts.iter_mut().enumerate() {
+                *shift += dot(&seam, self.field(side, i % self.bx, i / self.bx));
+            }
+        }
+        shifts
+    }
+
     /// Shift in voxels and its slopes ∂s/∂x, ∂s/∂y in voxels per stack: central
     /// differences inside the block, one-sided ones at its border.
     pub fn shift_and_gradient(
