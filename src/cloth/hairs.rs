@@ -61,6 +61,11 @@ impl<'a> HairLayer<'a> {
         })
     }
 
+    /// Size of a voxel of the layer, mm.
+    pub fn patch_voxel_mm(&self) -> Vec3 {
+        self.patch.voxel_mm
+    }
+
     /// Height of the surface of a face at a place, mm: crowns blended between crossings.
     fn surface(&self, face: usize, place: Vec3) -> f32 {
         let [weft, warp] = self.crowns[face];

@@ -1,11 +1,12 @@
 //! Time to equal error against mitsuba 3.5.2, and our own path rate.
 //!
-//! `cargo bench --bench render` prints; nothing is asserted. Two grids fill a frame of
-//! 512²: a thin silk satin and a thick wool twill. Both renderers are set against one
+//! `cargo bench --bench render` prints; nothing is asserted. Four grids fill a frame of
+//! 512²: a thin silk satin and a thick wool twill, each once sampled from the cloth that
+//! the program makes of a design and once from procedural yarns. Both renderers are set against one
 //! reference of ours (their agreement is a test of its own); error² falls with 1/time, so
 //! the ratio of error²·seconds is the ratio of times to equal error. For mitsuba's
 //! compiled variant name LLVM in `DRJIT_LIBLLVM_PATH`. `quick` in the arguments leaves
-//! out the peer.
+//! out the peer, `exemplars`, `procedural`, `silk` or `wool` all other grids.
 
 #[path = "../render_scenes/mod.rs"]
 mod render_scenes;
@@ -13,11 +14,18 @@ mod render_scenes;
 use std::path::Path;
 use std::process::Command;
 
-use glam::Vec3;
-use pickglass::render::{Background, RenderSettings};
-use pickglass::volume::Taps;
+use std::sync::Arc;
+
+use glam::{UVec3, Vec3};
+use pickglass::design::{Design, Family, Filled, Structure, Yarn, YarnId, YarnMaps, usual_sett};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::presets;
+use pickglass::job::Job;
+use pickglass::render::{Background, Bounds, Medium, RenderSettings};
+use pickglass::still::{StillRequest, prepare};
+use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 use render_scenes::peer::{PeerView, python, relative_mse, script, write_film, write_scene};
-use render_scenes::{YarnGrid, shoot, silk_satin, wool_twill};
+use render_scenes::{shoot, silk_satin, wool_twill};
 
 const SIZE: u32 = 512;
 const SPP: u32 = 8;
@@ -25,17 +33,81 @@ const REFERENCE_SPP: u32 = 48;
 const PEER_SPP: u32 = 2;
 
 fn main() {
-    let quick = std::env::args().any(|argument| argument == "quick");
-    for (name, scene) in [
-        ("silk satin", silk_satin(20)),
-        ("wool twill", wool_twill(8)),
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let quick = arguments.iter().any(|argument| argument == "quick");
+    let words = ["exemplars", "procedural", "silk", "wool"];
+    let asked: Vec<&str> = (words.into_iter())
+        .filter(|word| arguments.iter().any(|argument| argument == word))
+        .collect();
+    let wanted = |name: &str| asked.iter().all(|word| name.contains(word));
+    for (name, design, side, voxel_mm) in [
+        ("silk satin of exemplars", silk_design(), 2.6, 0.006),
+        ("wool twill of exemplars", wool_design(), 7.0, 0.016),
     ] {
-        measure(name, &scene, quick);
+        if wanted(name) {
+            let (grid, bounds) = sampled(&design, side, voxel_mm);
+            measure(name, &grid, bounds, quick);
+        }
+    }
+    for (name, scene) in [
+        ("procedural silk satin", silk_satin(20)),
+        ("procedural wool twill", wool_twill(8)),
+    ] {
+        if wanted(name) {
+            measure(name, &scene.grid(Taps::Nearest), scene.bounds(), quick);
+        }
     }
 }
 
-fn measure(name: &str, scene: &YarnGrid, quick: bool) {
-    let bounds = scene.bounds();
+/// The preset silk satin.
+fn silk_design() -> Design {
+    let preset = presets::design("silk-satin").expect("a preset");
+    preset.expect("the preset reads")
+}
+
+/// An undyed 2/2 twill of heavy wool.
+fn wool_design() -> Design {
+    let mut yarn = Yarn::new("wool", Family::Wool, Family::Wool.numbers().undyed);
+    yarn.tex = Some(180.0);
+    let maps = YarnMaps::plain(YarnId(0), YarnId(0));
+    let yarns = vec![yarn];
+    let sett = usual_sett(&yarns, &maps);
+    let twill = Structure::Weave(Filled::once("2/2 twill").expect("a notation"));
+    Design::new("wool twill", twill, yarns, maps, sett).expect("a design")
+}
+
+/// A square of a design's cloth as a dense grid of cubic voxels; sides in mm.
+fn sampled(design: &Design, side: f32, voxel_mm: f32) -> (DenseGrid, Bounds) {
+    let request = StillRequest::default();
+    let store = ExemplarStore::user();
+    let design = Arc::new(design.clone());
+    let prepared = prepare(&design, &request, &store, &Job::new()).expect("a cloth");
+    let cloth = prepared.cloth().clone().with_window(0.0..side, 0.0..side);
+    let (low, high) = cloth.height_range();
+    let size = (Vec3::new(side, side, high - low) / voxel_mm).ceil();
+    let bounds = Bounds {
+        min: Vec3::ZERO,
+        max: size * voxel_mm,
+    };
+    let optics = (0..design.yarns().len() as u32)
+        .map(|yarn| Optics {
+            albedo: Medium::albedo(&cloth, yarn),
+            alpha: design.yarns()[yarn as usize].alpha(),
+        })
+        .collect();
+    let voxel = |cell: UVec3| {
+        let voxel = cloth.voxel_at((cell.as_vec3() + 0.5) * voxel_mm + Vec3::Z * low);
+        GridVoxel {
+            sigma: voxel.sigma,
+            direction: voxel.direction,
+            optics: voxel.optics,
+        }
+    };
+    let grid = DenseGrid::from_fn(size.as_uvec3(), bounds, optics, Taps::Nearest, voxel);
+    (grid.expect("the cloth is sound"), bounds)
+}
+
+fn measure(name: &str, grid: &DenseGrid, bounds: Bounds, quick: bool) {
     let view = PeerView {
         target: bounds.max * 0.5,
         from: Vec3::new(0.0, -0.3, 1.0),
@@ -54,10 +126,9 @@ fn measure(name: &str, scene: &YarnGrid, quick: bool) {
         background: Background::Sky,
         ..RenderSettings::default()
     };
-    let grid = scene.grid(Taps::Nearest);
     let (camera, lights) = (view.camera(), view.lights());
     let before = cpu_seconds();
-    let ours = shoot(&grid, &camera, &lights, &settings);
+    let ours = shoot(grid, &camera, &lights, &settings);
     let cpu = cpu_seconds() - before;
     let counters = ours.counters;
     let per_path = |count: u64| count as f64 / counters.paths as f64;
@@ -84,7 +155,7 @@ fn measure(name: &str, scene: &YarnGrid, quick: bool) {
         spp: REFERENCE_SPP,
         ..settings.clone()
     };
-    let reference = shoot(&grid, &camera, &lights, &long).film;
+    let reference = shoot(grid, &camera, &lights, &long).film;
     let mse = relative_mse(&ours.film, &reference);
     let (product, cpu_product) = (mse * ours.seconds, mse * cpu);
     println!(
@@ -92,7 +163,7 @@ fn measure(name: &str, scene: &YarnGrid, quick: bool) {
         ours.seconds
     );
     let folder = tempfile::tempdir().expect("a folder");
-    write_scene(folder.path(), &grid, bounds, &view, &settings);
+    write_scene(folder.path(), grid, bounds, &view, &settings);
     write_film(folder.path(), "reference", &reference);
     for variant in ["scalar_rgb", "llvm_ad_rgb"] {
         match peer(&python, folder.path(), variant) {
