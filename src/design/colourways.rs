@@ -42,7 +42,9 @@ pub enum ColourwayError {
         problem: &'static str,
     },
     /// Another number of yarns than the design.
-    #[error("colourway \"{name}\" has {found} yarns where the design has {expected}: give one each")]
+    #[error(
+        "colourway \"{name}\" has {found} yarns where the design has {expected}: give one each"
+    )]
     Count {
         /// The colourway.
         name: String,

@@ -290,8 +290,8 @@ pub fn read_library() -> Result<Vec<LibraryWeave>, LibraryError> {
     let mut all = Vec::new();
     for (family, text) in FILES {
         let wrong = |place: String, problem: String| LibraryError { place, problem };
-        let file: File = ron::from_str(text)
-            .map_err(|error| wrong(family.to_owned(), error.to_string()))?;
+        let file: File =
+            ron::from_str(text).map_err(|error| wrong(family.to_owned(), error.to_string()))?;
         for entry in file.weaves {
             let named = |problem| wrong(format!("{family}, {}", entry.name), problem);
             let colours = match &entry.colours {

@@ -84,7 +84,9 @@ mod tests {
         assert_eq!(loose_layer(&double), Some(Layer { ends: 2, picks: 2 }));
         // One stitch holds it.
         let mut stitched = double.clone();
-        let back = (0..4).find(|&pick| pick % 2 == 0 && !double.get(1, pick)).unwrap();
+        let back = (0..4)
+            .find(|&pick| pick % 2 == 0 && !double.get(1, pick))
+            .unwrap();
         stitched.set(1, back, true);
         assert_eq!(loose_layer(&stitched), None);
     }

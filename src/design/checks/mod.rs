@@ -109,10 +109,7 @@ pub fn check(design: &Design) -> MillReport {
 /// What keeps a loom from weaving the design.
 fn obstacles(design: &Design, ends: &[u32], picks: &[u32]) -> Vec<String> {
     let mut obstacles = Vec::new();
-    for (map, thread) in [
-        (&design.maps().warp, "warp"),
-        (&design.maps().weft, "weft"),
-    ] {
+    for (map, thread) in [(&design.maps().warp, "warp"), (&design.maps().weft, "weft")] {
         if map.order().is_none() {
             obstacles.push(format!(
                 "a {thread} yarn changes along its length: give the {thread} an order"

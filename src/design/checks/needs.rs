@@ -73,7 +73,10 @@ pub fn yarn_needs(design: &Design, warp: &TakeUp, weft: &TakeUp) -> YarnNeeds {
     let mut yarns = vec![YarnNeed::default(); design.yarns().len()];
     let taken = |side: &TakeUp, thread: u64| {
         let threads = side.threads.len().max(1) as u64;
-        1.0 + side.threads.get((thread % threads) as usize).unwrap_or(&0.0)
+        1.0 + side
+            .threads
+            .get((thread % threads) as usize)
+            .unwrap_or(&0.0)
     };
     match &design.maps().warp {
         YarnMap::Order(order) => {

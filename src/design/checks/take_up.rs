@@ -72,13 +72,25 @@ pub fn take_up(design: &Design, weave: &WeavePattern, whose: Interlacing) -> Tak
         Interlacing::Weft => {
             let maps = design.maps();
             let pitch = design.sett().ends.mean_pitch_mm();
-            (weave, &maps.weft, &maps.warp, pitch, design.lattice().across)
+            (
+                weave,
+                &maps.weft,
+                &maps.warp,
+                pitch,
+                design.lattice().across,
+            )
         }
         Interlacing::Warp => {
             turned = weave.transposed();
             let maps = design.maps();
             let pitch = design.sett().picks.mean_pitch_mm();
-            (&turned, &maps.warp, &maps.weft, pitch, design.lattice().along)
+            (
+                &turned,
+                &maps.warp,
+                &maps.weft,
+                pitch,
+                design.lattice().along,
+            )
         }
     };
     let crossed = mean_diameter(design, crossing);

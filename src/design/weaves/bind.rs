@@ -134,9 +134,7 @@ impl Binding {
         let (ends, picks) = (self.weave.ends(), self.weave.picks());
         let value = self.weave.get(end, pick);
         let reach = |at: &dyn Fn(u32) -> bool| {
-            (1..=self.longest)
-                .take_while(|&by| at(by) == value)
-                .count() as u32
+            (1..=self.longest).take_while(|&by| at(by) == value).count() as u32
         };
         let right = reach(&|by| self.weave.get((end + by % ends) % ends, pick));
         let left = reach(&|by| self.weave.get((end + ends - by % ends) % ends, pick));

@@ -182,7 +182,10 @@ pub fn counterchange(weave: &WeavePattern) -> Result<WeavePattern, CombineError>
 ///
 /// # Errors
 /// [`CombineError::Size`] if the repeat is too large.
-pub fn double_cloth(face: &WeavePattern, back: &WeavePattern) -> Result<WeavePattern, CombineError> {
+pub fn double_cloth(
+    face: &WeavePattern,
+    back: &WeavePattern,
+) -> Result<WeavePattern, CombineError> {
     let (ends, picks) = common(face, back)?;
     check_size(2 * u64::from(ends), 2 * u64::from(picks))?;
     Ok(WeavePattern::from_fn(2 * ends, 2 * picks, |end, pick| {
@@ -335,19 +338,16 @@ mod tests {
     fn shadings_that_cannot_be_are_refused() {
         let weft = weave("1/7 satin move 3").unwrap();
         let warp = weave("7/1 satin move 3").unwrap();
-        assert_eq!(
-            shadow_series(&warp, &weft, 4),
-            Err(CombineError::NotShaded)
-        );
-        assert_eq!(
-            shadow_series(&weft, &warp, 1),
-            Err(CombineError::Steps(1))
-        );
+        assert_eq!(shadow_series(&warp, &weft, 4), Err(CombineError::NotShaded));
+        assert_eq!(shadow_series(&weft, &warp, 1), Err(CombineError::Steps(1)));
         let most = shadow_series(&weft, &warp, 50).unwrap_err().to_string();
         assert!(most.contains("at most 49"), "{most}");
         assert_eq!(shadow_series(&weft, &warp, 49).unwrap().len(), 49);
         // From a weave to itself there is nothing to add, but there are two ends.
-        assert_eq!(shadow_series(&weft, &weft, 2).unwrap(), [weft.clone(), weft]);
+        assert_eq!(
+            shadow_series(&weft, &weft, 2).unwrap(),
+            [weft.clone(), weft]
+        );
     }
 
     #[test]

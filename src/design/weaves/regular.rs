@@ -93,7 +93,11 @@ fn tie_distance(ends: u32, step: u32) -> u32 {
 
 /// Twill that turns every `width` ends; at each cut the weave jumps by half a repeat, so
 /// that face and back change places and no long float arises.
-pub(super) fn herringbone(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
+pub(super) fn herringbone(
+    ratio: &[u32],
+    width: u32,
+    leans_left: bool,
+) -> Result<WeavePattern, String> {
     let repeat: u32 = ratio.iter().sum();
     if !(2..=MAX_REPEAT / 2).contains(&width) {
         return Err(format!(

@@ -12,9 +12,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::Fault;
 use super::image::{read_map, read_pattern, write_map, write_pattern};
 use crate::design::{
-    Colourway, Corrections, Density, Design, Draft, Family, Fill, Filled, FirstEnd, FirstPick, ForeignSection,
-    Grid, Lattice, Lifting, MAX_COLOURWAYS, MAX_CROSSINGS, Origin, Region, Regions, Repeat, Sett, Shed, Srgb,
-    StatedThreads, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps, check_size,
+    Colourway, Corrections, Density, Design, Draft, Family, Fill, Filled, FirstEnd, FirstPick,
+    ForeignSection, Grid, Lattice, Lifting, MAX_COLOURWAYS, MAX_CROSSINGS, Origin, Region, Regions,
+    Repeat, Sett, Shed, Srgb, StatedThreads, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMap,
+    YarnMaps, check_size,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -289,7 +290,8 @@ pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
         across: repeat(file.across),
         along: repeat(file.along),
     };
-    let mut design = Design::new(file.name, structure, yarns, maps, sett)?.with_lattice(lattice)?
+    let mut design = Design::new(file.name, structure, yarns, maps, sett)?
+        .with_lattice(lattice)?
         .with_colourways(colourways)?;
     design.notes = file.notes;
     if let Some(found) = file.origin {
