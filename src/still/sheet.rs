@@ -158,7 +158,7 @@ pub fn render_sheet(
             _ => prepare(&design, &request, store, job)?,
         };
         let still = render(&ready, &request, job, &mut |pass| {
-            on_pass(index, count, pass)
+            on_pass(index, count, pass);
         })?;
         let (x, y) = layout.place(index, width, height);
         paste(&mut picture, &still.picture(), x, y);

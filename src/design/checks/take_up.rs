@@ -207,8 +207,8 @@ mod tests {
             }
         }
         // Peirce's approximation for slight waves: (9/16)(h/p)² of the pitch.
-        let (pitch, both) = (5.0, 0.4);
-        let slight = 9.0 / 16.0 * (0.5 * both / pitch as f64).powi(2) * pitch;
+        let (pitch, both) = (5.0_f64, 0.4);
+        let slight = 9.0 / 16.0 * (0.5 * both / pitch).powi(2) * pitch;
         assert!((excess_mm(pitch, both) / slight - 1.0).abs() < 0.15);
     }
 }

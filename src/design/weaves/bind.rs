@@ -275,7 +275,7 @@ impl Binding {
     fn best_in(&mut self, float: &Long, from: u32, to: u32, detour: u32) -> (u32, i64) {
         let middle = u64::from(from) + u64::from(to);
         // Every fourth detour goes anywhere, lest it undo the one before for ever.
-        let anywhere = detour > 0 && crate::hash::mix(u64::from(detour)) % 4 == 0;
+        let anywhere = detour > 0 && crate::hash::mix(u64::from(detour)).is_multiple_of(4);
         let mut best = (from, i64::MIN, u64::MAX);
         for step in from..to {
             let (end, pick) = float.crossing(step, &self.weave);
