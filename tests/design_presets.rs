@@ -8,8 +8,8 @@
 use std::path::Path;
 
 use pickglass::design::{
-    Design, Family, Fill, Filled, Grid, Region, Regions, Sett, Srgb, Structure, Yarn, YarnId,
-    YarnMap, YarnMaps, floats,
+    Colourway, Design, Family, Fill, Filled, Grid, Region, Regions, Sett, Srgb, Structure, Yarn,
+    YarnId, YarnMap, YarnMaps, floats,
 };
 use pickglass::formats::{atomic, presets, ron};
 
@@ -97,7 +97,21 @@ fn herringbone() -> Design {
     );
     let note = "Herringbone, after Zhao 2012, Figure 11a.";
     let weave = woven("2/2 herringbone 12");
+    let colourway = |name: &str, warp: (&str, &str), weft: (&str, &str)| Colourway {
+        name: name.to_owned(),
+        yarns: vec![
+            yarn(warp.0, Family::Cotton, warp.1, 29.5),
+            yarn(weft.0, Family::Cotton, weft.1, 29.5),
+        ],
+    };
+    let colourways = vec![
+        colourway("night", ("navy", "#1d2a4d"), ("cream", "#efe6d2")),
+        colourway("autumn", ("umber", "#4a2f1f"), ("rust", "#b5562b")),
+        colourway("granite", ("charcoal", "#2f3133"), ("ash", "#b7b8b4")),
+    ];
     design("Herringbone", note, weave, yarns, maps, (42.0, 38.0))
+        .with_colourways(colourways)
+        .unwrap()
 }
 
 fn twills_9() -> Design {

@@ -124,6 +124,11 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
+/// SGGX roughness of a yarn's fibres.
+fn roughness(yarn: &Yarn) -> f32 {
+    yarn.alpha().clamp(0.01, 1.0)
+}
+
 /// The yarns that a map uses, in order of first use.
 fn used(map: &YarnMap, design: &Design) -> Vec<YarnId> {
     let mut seen = vec![false; design.yarns().len()];
@@ -263,11 +268,7 @@ impl ClothVolume {
             ends: design.end_positions(),
             picks: design.pick_positions(),
             full,
-            alpha: design
-                .yarns()
-                .iter()
-                .map(|yarn| yarn.alpha().clamp(0.01, 1.0))
-                .collect(),
+            alpha: design.yarns().iter().map(roughness).collect(),
             albedo,
             settings,
             window: Arc::default(),
@@ -314,6 +315,20 @@ impl ClothVolume {
         if albedo.len() == self.albedo.len() {
             self.albedo = albedo;
         }
+    }
+
+    /// Takes over colour and gloss of the yarns of `design`, the same design in another
+    /// colourway, where they are built alike (same family and size): no synthesis. False,
+    /// and nothing changed, where the cloth has to be made anew.
+    pub fn recolour_as(&mut self, design: &Design) -> bool {
+        let alike = YarnClasses::new(design) == self.classes
+            && *design.maps() == self.maps
+            && design.yarns().len() == self.albedo.len();
+        if alike {
+            self.recolour(design.yarns().iter().map(super::colour::albedo).collect());
+            self.alpha = design.yarns().iter().map(roughness).collect();
+        }
+        alike
     }
 
     /// The assignment and its randomisation.

@@ -1,5 +1,6 @@
 //! The design: everything the designer decided, and what was kept of the file it is from.
 
+use super::colourways::{self, Colourway, ColourwayError};
 use super::lattice::{Lattice, LatticeError};
 use super::maps::{YarnMap, YarnMaps};
 use super::pattern::WeavePattern;
@@ -40,6 +41,9 @@ pub enum DesignError {
     /// A lattice that does not close.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
+    /// A colourway that does not fit.
+    #[error(transparent)]
+    Colourway(#[from] ColourwayError),
 }
 
 /// A section of a foreign file that the design has no place for, kept word by word.
@@ -123,6 +127,7 @@ pub struct Design {
     maps: YarnMaps,
     sett: Sett,
     lattice: Lattice,
+    colourways: Vec<Colourway>,
 }
 
 impl Design {
@@ -153,6 +158,7 @@ impl Design {
             maps,
             sett,
             lattice: Lattice::default(),
+            colourways: Vec::new(),
         })
     }
 
@@ -194,14 +200,44 @@ impl Design {
     /// The same design in other yarns and another arrangement of them.
     ///
     /// # Errors
-    /// [`DesignError`] if a map names a yarn that is not there.
+    /// [`DesignError`] if a map names a yarn that is not there, or the colourways have
+    /// another number of yarns.
     pub fn with_yarns(mut self, yarns: Vec<Yarn>, maps: YarnMaps) -> Result<Self, DesignError> {
         let (ends, picks) = self.structure.size();
         check_yarns(&yarns)?;
         check_map("warp", &maps.warp, yarns.len(), ends, picks)?;
         check_map("weft", &maps.weft, yarns.len(), ends, picks)?;
+        colourways::check(&self.colourways, yarns.len())?;
         (self.yarns, self.maps) = (yarns, maps);
         Ok(self)
+    }
+
+    /// The same design with these colourways instead of those it had.
+    ///
+    /// # Errors
+    /// [`ColourwayError`] if one does not fit the design.
+    pub fn with_colourways(mut self, colourways: Vec<Colourway>) -> Result<Self, DesignError> {
+        colourways::check(&colourways, self.yarns.len())?;
+        self.colourways = colourways;
+        Ok(self)
+    }
+
+    /// The same design in the yarns of one of its colourways, by name in any case.
+    ///
+    /// # Errors
+    /// [`ColourwayError::Unknown`] lists those there are.
+    pub fn with_colourway(mut self, name: &str) -> Result<Self, ColourwayError> {
+        let named = |known: &&Colourway| colourways::same_name(&known.name, name);
+        let Some(chosen) = self.colourways.iter().find(named) else {
+            return Err(colourways::unknown(name, &self.name, &self.colourways));
+        };
+        self.yarns = chosen.yarns.clone();
+        Ok(self)
+    }
+
+    /// Its colourways, beside its own yarns.
+    pub fn colourways(&self) -> &[Colourway] {
+        &self.colourways
     }
 
     /// Where the weave comes from.
@@ -301,7 +337,7 @@ fn positions(density: &Density, threads: u32) -> Positions {
 }
 
 /// Least common multiple, saturating.
-fn lcm(a: u64, b: u64) -> u64 {
+pub(super) fn lcm(a: u64, b: u64) -> u64 {
     let (mut x, mut y) = (a.max(1), b.max(1));
     while y != 0 {
         (x, y) = (y, x % y);

@@ -31,6 +31,29 @@ impl Ties {
         ties
     }
 
+    /// Reads sets as weavers write them, counted from 1: `1 2 3,4 -` (`-` = none).
+    ///
+    /// # Errors
+    /// What was expected and what was found.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let mut ties = Self::default();
+        let mut set = Vec::new();
+        for word in text.split_whitespace() {
+            set.clear();
+            for member in word.split(',').filter(|_| word != "-") {
+                match member.parse::<u16>() {
+                    Ok(member) if member > 0 => set.push(member - 1),
+                    _ => {
+                        let word: String = word.chars().take(40).collect();
+                        return Err(format!("expected numbers from 1 or -, found \"{word}\""));
+                    }
+                }
+            }
+            ties.push(&set);
+        }
+        Ok(ties)
+    }
+
     /// No sets yet, but room for `sets` with `members` in all.
     pub fn with_room(sets: usize, members: usize) -> Self {
         Self {

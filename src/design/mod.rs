@@ -7,18 +7,24 @@
 //! | file | holds |
 //! |---|---|
 //! | `pattern` | the weave, one bit a crossing |
-//! | `weaves` | weaves by notation ("2/2 twill", "1/7 satin move 3") |
+//! | `weaves` | weaves by notation ("2/2 twill", "1/7 satin move 3"), and made of weaves |
+//! | `library` | weaves by name ("honeycomb 8"), with what they are for |
 //! | `draft` | threading, tie-up and treadling, and the weave they make |
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
 //! | `document` | the design that holds all of these together |
+//! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
+//! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
 
+pub mod checks;
+mod colourways;
 mod document;
 mod draft;
 mod floats;
 mod grid;
 mod lattice;
+pub mod library;
 mod maps;
 mod pattern;
 mod sett;
@@ -26,6 +32,7 @@ mod structure;
 mod weaves;
 mod yarn;
 
+pub use colourways::{Colourway, ColourwayError, MAX_COLOURWAYS};
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };
@@ -33,12 +40,17 @@ pub use draft::{Draft, DraftError, Lifting, MAX_SHAFTS, Shed, Ties};
 pub use floats::{FloatKind, FloatLengths, FloatReport, SeamFloat, floats, longest_float};
 pub use grid::Grid;
 pub use lattice::{Lattice, LatticeError, Repeat};
+pub use library::{ColourOrders, LibraryWeave, library};
 pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
 pub use structure::{Corrections, Fill, Filled, Region, Regions, Structure, StructureError};
-pub use weaves::{MAX_REPEAT, NotationError, satin, satin_moves, weave};
+pub use weaves::{
+    BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
+    double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,
+    shifted, weave,
+};
 pub use yarn::{
     ColourError, Family, FamilyError, FamilyNumbers, Srgb, USUAL_SURFACE_SHARE, Yarn, YarnId,
 };

@@ -2,19 +2,23 @@
 //!
 //! [`prepare`] makes the cloth (exemplars, synthesis, colours), [`render()`] traces it pass
 //! by pass and calls back after each, and [`Still::save`] writes the result. Both the
-//! command line and the window are consumers of the same passes.
+//! command line and the window are consumers of the same passes. [`render_sheet`] puts all
+//! colourways of a design side by side, the cloth made once wherever their yarns allow.
 
 mod effects;
 mod picture;
 mod request;
+mod sheet;
 
 pub use effects::{DIALS, DialError, EFFECTS};
 pub use picture::{Pass, PreparedCloth, Still, prepare, render, render_still, usual_width_mm};
 pub use request::{EffectBase, EffectChoice, LightChoice, StillReport, StillRequest, Stop};
+pub use sheet::{AS_DESIGNED, Sheet, SheetPlace, render_sheet};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::cloth::ClothError;
+use crate::design::ColourwayError;
 use crate::exemplar::ExemplarError;
 use crate::formats::exr::ExrError;
 use crate::formats::png::PngError;
@@ -45,6 +49,12 @@ pub enum StillError {
     /// A width of cloth that is not a length.
     #[error("a picture {0} mm wide cannot be made; give a width between 0.01 and 10000 mm")]
     Width(f32),
+    /// A colourway that the design does not have.
+    #[error(transparent)]
+    Colourway(#[from] ColourwayError),
+    /// A sheet of colourways in a format that cannot hold it.
+    #[error("{}: a sheet of colourways is written as .png; end the name in that", .0.display())]
+    SheetEnding(PathBuf),
     /// The picture could not be written.
     #[error(transparent)]
     Png(#[from] PngError),
@@ -68,5 +78,16 @@ impl From<ClothError> for StillError {
             }
             other => Self::Cloth(other),
         }
+    }
+}
+
+/// Refuses a file name for a sheet that does not end in `.png`.
+///
+/// # Errors
+/// [`StillError::SheetEnding`].
+pub fn png_ending(path: &Path) -> Result<(), StillError> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some(ending) if ending.eq_ignore_ascii_case("png") => Ok(()),
+        _ => Err(StillError::SheetEnding(path.to_owned())),
     }
 }

@@ -64,6 +64,32 @@ impl PreparedCloth {
     pub fn cloth(&self) -> &ClothVolume {
         &self.cloth
     }
+
+    /// Puts the cloth into the yarns of `design`, the same design in another colourway,
+    /// without making anything anew. False, and nothing changed, where a yarn has another
+    /// family or size: then [`prepare`] it.
+    pub fn recolour(&mut self, design: &Arc<Design>) -> bool {
+        let alike = self.cloth.recolour_as(design);
+        if alike {
+            self.design = Arc::clone(design);
+            self.seconds.clear();
+        }
+        alike
+    }
+}
+
+/// The design in the colourway that a request names.
+///
+/// # Errors
+/// When it has no such colourway.
+pub(super) fn coloured(
+    design: &Arc<Design>,
+    request: &StillRequest,
+) -> Result<Arc<Design>, StillError> {
+    match &request.colourway {
+        None => Ok(Arc::clone(design)),
+        Some(name) => Ok(Arc::new(Design::clone(design).with_colourway(name)?)),
+    }
 }
 
 /// The picture so far.
@@ -109,7 +135,8 @@ fn settings(
     Ok((cloth, render, on))
 }
 
-/// Builds what every picture of a design needs; `request` gives the dials and the seed.
+/// Builds what every picture of a design needs; `request` gives the dials, the seed and
+/// the colourway.
 ///
 /// # Errors
 /// When the design cannot be made into cloth, a dial is wrong, or the job is cancelled.
@@ -120,6 +147,7 @@ pub fn prepare(
     job: &Job,
 ) -> Result<PreparedCloth, StillError> {
     let (settings, _, effects) = settings(request)?;
+    let design = &coloured(design, request)?;
     let begun = Instant::now();
     let catalogue = Arc::new(Catalogue::standard());
     let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, job)?;
@@ -343,8 +371,8 @@ pub struct Still {
     pub film: Film,
     tone: Tone,
     denoise: bool,
-    pixels_per_mm: f32,
-    texts: Vec<(String, String)>,
+    pub(super) pixels_per_mm: f32,
+    pub(super) texts: Vec<(String, String)>,
 }
 
 impl Still {

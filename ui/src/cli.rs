@@ -43,6 +43,20 @@ pub enum Command {
     Synthesize(SynthesizeArgs),
     /// Render a picture of the cloth
     Still(Box<StillArgs>),
+    /// The weave library: names, repeats and what they are for
+    Weaves(WeavesArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct WeavesArgs {
+    /// A weave's name: draws its repeat; without it, lists all
+    pub name: Option<String>,
+    /// List only one family
+    #[arg(long, value_name = "FAMILY", conflicts_with = "name")]
+    pub family: Option<String>,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -164,7 +178,7 @@ pub struct StillArgs {
     /// auto, all or none, then +name and -name, separated by commas
     #[arg(long, value_name = "auto|all|none|±name", default_value = "auto", allow_hyphen_values = true, value_parser = values::effects)]
     pub effects: EffectChoice,
-    /// The colourway of the design
+    /// A colourway of the design, or all of them side by side ("all", .png; --size is each)
     #[arg(long, value_name = "C")]
     pub colourway: Option<String>,
     /// Seed of the patch shifts and of the paths

@@ -68,6 +68,109 @@ fn check_has_the_keys_that_scripts_rely_on() {
 }
 
 #[test]
+fn check_says_what_a_mill_asks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = json(&pickglass(folder.path(), &["check", "denim", "--json"]));
+    has_keys(
+        &report,
+        &[
+            "heddles",
+            "lifts",
+            "longest_float_mm.warp_face",
+            "longest_float_inside.weft_back",
+            "unbound_ends",
+            "unbound_picks",
+            "loose_layer",
+            "take_up.warp.mean",
+            "take_up.weft.jammed",
+            "take_up.balance",
+            "obstacles",
+            "yarn_per_metre",
+            "grams_per_m2",
+            "repeat_cm",
+            "cloth_repeat_cm",
+            "colourways",
+        ],
+    );
+    assert_eq!(report["heddles"], serde_json::json!([1, 1, 1, 1]));
+    assert_eq!(report["weavable"], true);
+    // Four picks at 21 per cm.
+    let height = report["repeat_cm"][1].as_f64().expect("a number");
+    assert!((height - 4.0 / 21.0).abs() < 1e-5);
+    let text = pickglass(folder.path(), &["check", "denim"]);
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    for word in ["take-up", "heddles", "g/m²", "a loom can weave it"] {
+        assert!(text.contains(word), "no {word} in {text}");
+    }
+}
+
+#[test]
+fn the_weave_library_is_listed_and_drawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let all = json(&pickglass(folder.path(), &["weaves", "--json"]));
+    let weaves = all["weaves"].as_array().expect("a list");
+    assert!(weaves.len() >= 60);
+    let family = json(&pickglass(
+        folder.path(),
+        &["weaves", "--family", "crepe", "--json"],
+    ));
+    let some = family["weaves"].as_array().expect("a list");
+    assert!(!some.is_empty() && some.len() < weaves.len());
+    let one = json(&pickglass(
+        folder.path(),
+        &["weaves", "houndstooth", "--json"],
+    ));
+    has_keys(
+        &one["weaves"][0],
+        &[
+            "name",
+            "family",
+            "notation",
+            "ends",
+            "picks",
+            "use",
+            "drawdown",
+            "colours.warp",
+        ],
+    );
+    assert_eq!(one["weaves"][0]["colours"]["warp"], "DDDDLLLL");
+    let drawn = pickglass(folder.path(), &["weaves", "3/1 broken twill"]);
+    let drawn = String::from_utf8_lossy(&drawn.stdout).into_owned();
+    assert!(drawn.ends_with("###.\n.###\n##.#\n#.##\n"), "{drawn}");
+    refused(&pickglass(folder.path(), &["weaves", "tweedledum"]), 1);
+    let text = refused(&pickglass(folder.path(), &["weaves", "--family", "x"]), 1);
+    assert!(
+        text.contains("honeycomb") || text.contains("texture"),
+        "{text}"
+    );
+}
+
+#[test]
+fn colourways_are_chosen_by_name_or_shown_together() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let still = |extra: &[&str]| {
+        let mut line = vec!["still", "herringbone", "--size", "20x12", "--spp", "1"];
+        line.extend_from_slice(extra);
+        pickglass(folder.path(), &line)
+    };
+    let one = json(&still(&["-o", "a.png", "--colourway", "night", "--json"]));
+    assert_eq!(one["width"], 20);
+    let sheet = json(&still(&["-o", "b.png", "--colourway", "all", "--json"]));
+    let places = sheet["colourways"].as_array().expect("a list");
+    assert_eq!(places.len(), 4);
+    assert_eq!(places[1]["name"], "night");
+    assert_eq!(places[1]["recoloured"], true);
+    let picture = image::open(folder.path().join("b.png")).expect("a picture");
+    assert_eq!(
+        u64::from(picture.width()),
+        sheet["width"].as_u64().expect("a number")
+    );
+    let unknown = refused(&still(&["-o", "c.png", "--colourway", "spring"]), 1);
+    assert!(unknown.contains("night, autumn, granite"), "{unknown}");
+    refused(&still(&["-o", "c.exr", "--colourway", "all"]), 1);
+}
+
+#[test]
 fn the_sett_decides_the_scale() {
     let folder = tempfile::tempdir().expect("a folder");
     let report = json(&pickglass(
@@ -143,6 +246,7 @@ fn errors_are_one_line_and_exit_1() {
         &["still", "oxford", "-o", "a.png", "--renderer", "gpu"],
         &["still", "oxford", "-o", "a.png", "--renderer", "lumislice"],
         &["still", "oxford", "-o", "a.png", "--colourway", "autumn"],
+        &["still", "oxford", "-o", "a.png", "--colourway", "all"],
         &["convert", "oxford", "out.unknown"],
     ] {
         let text = refused(&pickglass(folder.path(), line), 1);

@@ -12,9 +12,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::Fault;
 use super::image::{read_map, read_pattern, write_map, write_pattern};
 use crate::design::{
-    Corrections, Density, Design, Draft, Family, Fill, Filled, FirstEnd, FirstPick, ForeignSection,
-    Grid, Lattice, Lifting, MAX_CROSSINGS, Origin, Region, Regions, Repeat, Sett, Shed, Srgb,
-    StatedThreads, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps, check_size,
+    Colourway, Corrections, Density, Design, Draft, Family, Fill, Filled, FirstEnd, FirstPick,
+    ForeignSection, Grid, Lattice, Lifting, MAX_COLOURWAYS, MAX_CROSSINGS, Origin, Region, Regions,
+    Repeat, Sett, Shed, Srgb, StatedThreads, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMap,
+    YarnMaps, check_size,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -39,8 +40,16 @@ struct DesignV1 {
     across: RepeatV1,
     #[serde(default)]
     along: RepeatV1,
+    #[serde(default, skip_serializing_if = "Limited::is_empty")]
+    colourways: Limited<ColourwayV1, MAX_COLOURWAYS>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     origin: Option<OriginV1>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ColourwayV1 {
+    name: String,
+    yarns: Limited<YarnV1, MAX_YARNS>,
 }
 
 /// A PNG in base64.
@@ -191,6 +200,12 @@ const MAX_ORDER: usize = 1 << 20;
 #[serde(transparent)]
 struct Limited<T, const MOST: usize>(Vec<T>);
 
+impl<T, const MOST: usize> Limited<T, MOST> {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
 impl<T, const MOST: usize> Default for Limited<T, MOST> {
     fn default() -> Self {
         Self(Vec::new())
@@ -252,12 +267,12 @@ pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
         let problem = format!("{ends} × {picks} are declared, the weave has {found} × {lifts}");
         return Err(Fault::new("size", problem));
     }
-    let yarns = file
-        .yarns
-        .0
-        .into_iter()
-        .map(yarn)
-        .collect::<Result<Vec<_>, _>>()?;
+    let yarns = yarns(file.yarns)?;
+    let mut colourways = Vec::new();
+    for ColourwayV1 { name, yarns: found } in file.colourways.0 {
+        let yarns = self::yarns(found)?;
+        colourways.push(Colourway { name, yarns });
+    }
     let maps = YarnMaps {
         warp: map("warp", file.warp, ends, picks)?,
         weft: map("weft", file.weft, ends, picks)?,
@@ -275,7 +290,9 @@ pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
         across: repeat(file.across),
         along: repeat(file.along),
     };
-    let mut design = Design::new(file.name, structure, yarns, maps, sett)?.with_lattice(lattice)?;
+    let mut design = Design::new(file.name, structure, yarns, maps, sett)?
+        .with_lattice(lattice)?
+        .with_colourways(colourways)?;
     design.notes = file.notes;
     if let Some(found) = file.origin {
         design.origin = origin(found)?;
@@ -345,22 +362,7 @@ fn fill(place: &'static str, found: FillV1) -> Result<Fill, Fault> {
 
 /// Reads sets; as many as `count` unless that is `None`.
 fn sets(place: &'static str, text: &str, count: Option<u32>) -> Result<Ties, Fault> {
-    let mut ties = Ties::default();
-    let mut set = Vec::new();
-    for word in text.split_whitespace() {
-        set.clear();
-        for member in word.split(',').filter(|_| word != "-") {
-            match member.parse::<u16>() {
-                Ok(member) if member > 0 => set.push(member - 1),
-                _ => {
-                    let word: String = word.chars().take(40).collect();
-                    let problem = format!("expected numbers from 1 or -, found \"{word}\"");
-                    return Err(Fault::new(place, problem));
-                }
-            }
-        }
-        ties.push(&set);
-    }
+    let ties = Ties::parse(text).map_err(|problem| Fault::new(place, problem))?;
     match count {
         Some(count) if ties.len() != count as usize => {
             let problem = format!("expected {count} entries, found {}", ties.len());
@@ -394,6 +396,10 @@ fn draft(found: DraftV1, ends: u32, picks: u32) -> Result<Draft, Fault> {
 
 fn colour(place: &'static str, text: &str) -> Result<Srgb, Fault> {
     text.parse().map_err(|error| Fault::new(place, error))
+}
+
+fn yarns(found: Limited<YarnV1, MAX_YARNS>) -> Result<Vec<Yarn>, Fault> {
+    found.0.into_iter().map(yarn).collect()
 }
 
 fn yarn(found: YarnV1) -> Result<Yarn, Fault> {
@@ -502,7 +508,7 @@ pub(super) fn of_design(design: &Design) -> Result<Document, String> {
         ends: design.ends(),
         picks: design.picks(),
         structure: of_structure(design.structure())?,
-        yarns: Limited(design.yarns().iter().map(of_yarn).collect()),
+        yarns: of_yarns(design.yarns()),
         warp: of_map(&design.maps().warp)?,
         weft: of_map(&design.maps().weft)?,
         sett: SettV1 {
@@ -514,6 +520,16 @@ pub(super) fn of_design(design: &Design) -> Result<Document, String> {
         },
         across: of_repeat(lattice.across),
         along: of_repeat(lattice.along),
+        colourways: Limited(
+            design
+                .colourways()
+                .iter()
+                .map(|colourway| ColourwayV1 {
+                    name: colourway.name.clone(),
+                    yarns: of_yarns(&colourway.yarns),
+                })
+                .collect(),
+        ),
         origin: (design.origin != Origin::default()).then(|| of_origin(&design.origin)),
     };
     Ok(Document {
@@ -609,6 +625,10 @@ fn of_draft(draft: &Draft) -> DraftV1 {
         treadling,
         liftplan,
     }
+}
+
+fn of_yarns(yarns: &[Yarn]) -> Limited<YarnV1, MAX_YARNS> {
+    Limited(yarns.iter().map(of_yarn).collect())
 }
 
 fn of_yarn(yarn: &Yarn) -> YarnV1 {

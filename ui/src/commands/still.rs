@@ -8,10 +8,14 @@ use super::{check_output, note_warnings, seconds_json};
 use crate::cli::{RendererArg, StillArgs};
 use crate::opened::Opened;
 use crate::out::{self, Progress};
-use pickglass::still::{self, StillReport, StillRequest, Stop};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::still::{self, Pass, StillReport, StillRequest, Stop};
 
 /// Paths per pixel when no way to stop is given.
 const USUAL_SPP: u32 = 64;
+
+/// The name that asks for a sheet of every colourway.
+const ALL_COLOURWAYS: &str = "all";
 
 pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     refuse_absent_renderers(args.renderer)?;
@@ -19,17 +23,49 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     check_output(path)?;
     let opened = Opened::argument(&args.design, &args.sett)?;
     note_warnings(&opened.warnings);
-    if let Some(colourway) = &args.colourway {
-        anyhow::bail!(
-            "colourway {colourway}: {} has its own yarns only: leave out --colourway",
-            opened.name()
-        );
+    if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
+        return sheet(args, &opened, path);
     }
     let report = render_to(&opened, &request(args), path)?;
     if args.json {
         return out::say_json(&report_json(&report));
     }
     out::say(&describe(&report, path))
+}
+
+/// Renders all colourways of a design into one file.
+fn sheet(args: &StillArgs, opened: &Opened, path: &Path) -> anyhow::Result<()> {
+    still::png_ending(path)?;
+    let progress = Progress::new();
+    let mut show = |index: usize, count: usize, pass: &Pass<'_>| {
+        let picture = index + 1;
+        progress.show(&format!(
+            "colourway {picture} of {count} · {} spp",
+            pass.spp
+        ));
+    };
+    let (request, store) = (request(args), ExemplarStore::user());
+    let sheet = still::render_sheet(&opened.design, &request, &store, &progress.job(), &mut show);
+    progress.finish();
+    let sheet = sheet?;
+    sheet.save(path)?;
+    if args.json {
+        let mut report = report_json(&sheet.report);
+        let places = sheet.places.iter().map(|place| {
+            json!({
+                "name": place.name,
+                "x": place.x,
+                "y": place.y,
+                "width": sheet.each.0,
+                "height": sheet.each.1,
+                "recoloured": place.recoloured,
+            })
+        });
+        report["colourways"] = places.collect();
+        return out::say_json(&report);
+    }
+    let line = describe(&sheet.report, path);
+    out::say(&format!("{line}\n  {}", sheet.labels()))
 }
 
 /// Renders a picture into a file, with progress on standard error.

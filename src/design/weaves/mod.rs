@@ -21,7 +21,25 @@
 //! the numbers run along the warp: `2/3 satin move 2` lifts each end for two picks in
 //! succession. A satin's move must have no factor in common with the number of ends and
 //! must not be 1 or one less than that number (those are twills); 4 and 6 ends have no
-//! regular satin.
+//! regular satin. Every name of the [library](super::library()) is a notation too.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `regular` | what a ratio alone describes |
+//! | `combine` | weaves made of weaves: joined, shifted, rearranged, dropped, shaded |
+//! | `bind` | ties for floats that are too long |
+
+mod bind;
+mod combine;
+mod regular;
+
+pub use bind::{BindError, bind_floats};
+pub use combine::{
+    CombineError, both, counterchange, double_cloth, drop_repeat, either, rearranged, repeated,
+    shadow_series, shifted,
+};
+pub use regular::satin_moves;
+use regular::{herringbone, pointed, satin_of, twill, wavy};
 
 use super::pattern::WeavePattern;
 
@@ -63,9 +81,18 @@ struct Words {
 
 /// The weave that a notation stands for; the module's table lists them.
 ///
+/// A name of the [library](super::library()) stands for its weave.
+///
 /// # Errors
 /// [`NotationError`] with what is wrong and what would be right.
 pub fn weave(notation: &str) -> Result<WeavePattern, NotationError> {
+    regular_weave(notation).or_else(|error| {
+        super::library::find(notation).map_or(Err(error), |known| Ok(known.pattern().clone()))
+    })
+}
+
+/// As [`weave`], without the library: what the library itself is made of.
+pub(in crate::design) fn regular_weave(notation: &str) -> Result<WeavePattern, NotationError> {
     build(notation).map_err(|reason| NotationError {
         notation: notation
             .split_whitespace()
@@ -144,7 +171,7 @@ fn kind_of(names: &[String]) -> Result<Kind, String> {
         [] => Err("which weave? write for instance plain, 2/2 twill or 1/7 satin move 3".into()),
         _ => Err(format!(
             "\"{}\" is no weave known here: use plain, twill, satin, basket, warp rib, \
-             weft rib, herringbone, pointed twill or wavy twill",
+             weft rib, herringbone, pointed twill, wavy twill or a name of the library",
             names.join(" ").chars().take(40).collect::<String>()
         )),
     }
@@ -176,7 +203,7 @@ fn build(notation: &str) -> Result<WeavePattern, String> {
     let ratio = words
         .ratio
         .ok_or("the ratio is missing: write for instance 2/2 before the name")?;
-    let total: u32 = ratio.iter().sum();
+    let total = ratio.iter().fold(0u32, |sum, &n| sum.saturating_add(n));
     if ratio.len() % 2 == 1 {
         return Err("a ratio alternates over and under: 2/2 or 3/1/1/3".into());
     }
@@ -223,47 +250,6 @@ fn build(notation: &str) -> Result<WeavePattern, String> {
     }
 }
 
-/// For each pick of the repeat, whether a warp that starts at pick 0 is up.
-fn lifts(ratio: &[u32]) -> Vec<bool> {
-    let mut up = Vec::new();
-    for (place, &count) in ratio.iter().enumerate() {
-        up.extend(std::iter::repeat_n(place % 2 == 0, count as usize));
-    }
-    up
-}
-
-/// The weave whose end e comes up `starts[e]` picks later than end 0 of a twill.
-fn offset_twill(ratio: &[u32], starts: &[i64], picks: u32) -> WeavePattern {
-    let up = lifts(ratio);
-    let repeat = up.len() as i64;
-    WeavePattern::from_fn(starts.len() as u32, picks, |end, pick| {
-        up[(i64::from(pick) - starts[end as usize]).rem_euclid(repeat) as usize]
-    })
-}
-
-/// A twill: warp over and under by `ratio`, each end one pick after its neighbour.
-///
-/// Lines rise to the right (Z), or to the left if `leans_left` (S).
-fn twill(ratio: &[u32], leans_left: bool) -> WeavePattern {
-    let repeat: u32 = ratio.iter().sum();
-    let starts: Vec<i64> = (0..i64::from(repeat))
-        .map(|end| if leans_left { -end } else { end })
-        .collect();
-    offset_twill(ratio, &starts, repeat)
-}
-
-/// Greatest common divisor.
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
-
-/// The moves that make a regular satin on `ends` ends, smallest first.
-pub fn satin_moves(ends: u32) -> Vec<u32> {
-    (2..ends.saturating_sub(1))
-        .filter(|&step| gcd(step, ends) == 1)
-        .collect()
-}
-
 /// The weft satin 1/(`ends` − 1): one tie a pick, each `step` ends to the right of the
 /// last.
 ///
@@ -271,109 +257,6 @@ pub fn satin_moves(ends: u32) -> Vec<u32> {
 /// [`NotationError`] if no such satin exists; the message lists the moves that do.
 pub fn satin(ends: u32, step: u32) -> Result<WeavePattern, NotationError> {
     weave(&format!("1/{} satin move {step}", ends.saturating_sub(1)))
-}
-
-fn satin_of(over: u32, under: u32, step: Option<u32>) -> Result<WeavePattern, String> {
-    let ends = over + under;
-    let moves = satin_moves(ends);
-    let listed = |moves: &[u32]| {
-        let shown: Vec<String> = moves.iter().take(12).map(u32::to_string).collect();
-        shown.join(", ")
-    };
-    let Some(usual) = moves.iter().copied().max_by_key(|&step| {
-        // Of equally good moves the smallest: `max_by_key` keeps the last.
-        (tie_distance(ends, step), u32::MAX - step)
-    }) else {
-        return Err(format!(
-            "no regular satin exists on {ends} ends: use 5, 7, 8 or more"
-        ));
-    };
-    let step = step.unwrap_or(usual);
-    if !moves.contains(&step) {
-        return Err(format!(
-            "move {step} makes no satin on {ends} ends: use {}",
-            listed(&moves)
-        ));
-    }
-    // End e's tie is on the pick j with step·j ≡ e.
-    let mut starts = vec![0; ends as usize];
-    for pick in 0..ends {
-        starts[(pick * step % ends) as usize] = i64::from(pick);
-    }
-    Ok(offset_twill(&[over, under], &starts, ends))
-}
-
-/// Squared distance between the nearest ties of a satin.
-fn tie_distance(ends: u32, step: u32) -> u32 {
-    (1..ends)
-        .map(|pick| {
-            let along = step * pick % ends;
-            let along = along.min(ends - along);
-            let up = pick.min(ends - pick);
-            along * along + up * up
-        })
-        .min()
-        .unwrap_or(0)
-}
-
-/// Twill that turns every `width` ends; at each cut the weave jumps by half a repeat, so
-/// that face and back change places and no long float arises.
-fn herringbone(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
-    let repeat: u32 = ratio.iter().sum();
-    if !(2..=MAX_REPEAT / 2).contains(&width) {
-        return Err(format!(
-            "stripes of {width} ends: give 2 to {}",
-            MAX_REPEAT / 2
-        ));
-    }
-    let half = i64::from(repeat / 2);
-    let width = i64::from(width);
-    let hand = if leans_left { -1 } else { 1 };
-    let rising = (0..width).map(|end| hand * end);
-    let falling = (0..width).map(|end| hand * (width - 1 - end) + half);
-    let starts: Vec<i64> = rising.chain(falling).collect();
-    Ok(offset_twill(ratio, &starts, repeat))
-}
-
-/// Twill that turns on every `width`-th end: the turning ends stand alone.
-fn pointed(ratio: &[u32], width: u32, leans_left: bool) -> Result<WeavePattern, String> {
-    let repeat: u32 = ratio.iter().sum();
-    if !(2..=MAX_REPEAT / 2).contains(&width) {
-        return Err(format!(
-            "points every {width} ends: give 2 to {}",
-            MAX_REPEAT / 2
-        ));
-    }
-    let width = i64::from(width);
-    let hand = if leans_left { -1 } else { 1 };
-    let starts: Vec<i64> = (0..2 * width)
-        .map(|end| hand * end.min(2 * width - end))
-        .collect();
-    Ok(offset_twill(ratio, &starts, repeat))
-}
-
-/// Flattest slope of a wavy twill's lines in picks per end; the steepest is two minus it.
-const WAVY_FLATTEST: f64 = 0.4;
-
-/// Twill of `size` × `size` whose slope swings smoothly between flat and steep once.
-fn wavy(ratio: &[u32], size: u32, leans_left: bool) -> Result<WeavePattern, String> {
-    let repeat: u32 = ratio.iter().sum();
-    if !size.is_multiple_of(repeat) {
-        return Err(format!(
-            "{size} is no multiple of the repeat of {repeat}: use {}",
-            size.div_ceil(repeat) * repeat
-        ));
-    }
-    let turn = std::f64::consts::TAU / f64::from(size);
-    let swing = (1.0 - WAVY_FLATTEST) / turn;
-    let hand = if leans_left { -1 } else { 1 };
-    let starts: Vec<i64> = (0..size)
-        .map(|end| {
-            let end = f64::from(end);
-            hand * (end + swing * (turn * end).sin()).round() as i64
-        })
-        .collect();
-    Ok(offset_twill(ratio, &starts, size))
 }
 
 #[cfg(test)]

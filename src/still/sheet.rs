@@ -1,0 +1,263 @@
+//! A contact sheet: one design in all its colourways, side by side.
+//!
+//! The cloth is made once; a colourway whose yarns have the same families and sizes only
+//! recolours it. Pictures stand in rows from the top left, the design's own yarns first.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::picture::{Pass, PreparedCloth, Still, prepare, render};
+use super::request::{StillReport, StillRequest};
+use super::{StillError, png_ending};
+use crate::design::Design;
+use crate::exemplar::ExemplarStore;
+use crate::formats::png;
+use crate::job::Job;
+
+/// What the design's own yarns are called on a sheet.
+pub const AS_DESIGNED: &str = "as designed";
+
+/// The most pictures in a row while there are few.
+const FEW: usize = 4;
+/// The largest sheet in pixels each way.
+const LARGEST: u32 = 16_384;
+
+/// Where one colourway stands on a sheet.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SheetPlace {
+    /// The colourway.
+    pub name: String,
+    /// Pixels from the left edge.
+    pub x: u32,
+    /// Pixels from the top edge.
+    pub y: u32,
+    /// Whether the cloth was only recoloured for it, without synthesis.
+    pub recoloured: bool,
+}
+
+/// A finished sheet.
+pub struct Sheet {
+    /// How it came about: sizes of the whole sheet, times and faults of all pictures
+    /// together, the largest error.
+    pub report: StillReport,
+    /// Its pictures in order.
+    pub places: Vec<SheetPlace>,
+    /// Width and height of each picture in pixels.
+    pub each: (u32, u32),
+    picture: png::Picture,
+    metadata: png::Metadata,
+}
+
+impl Sheet {
+    /// The sheet as shown, sRGB with straight alpha; clear between the pictures.
+    pub fn picture(&self) -> &png::Picture {
+        &self.picture
+    }
+
+    /// Names and places, as the file's metadata says them: `name at x,y; …`.
+    pub fn labels(&self) -> String {
+        labels(&self.places)
+    }
+
+    /// Writes a `.png`, replacing the file in one step.
+    ///
+    /// # Errors
+    /// When the ending is another or the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), StillError> {
+        png_ending(path)?;
+        png::write(path, &self.picture, png::Depth::Eight, &self.metadata)?;
+        Ok(())
+    }
+}
+
+fn labels(places: &[SheetPlace]) -> String {
+    let each: Vec<String> = places
+        .iter()
+        .map(|place| format!("{} at {},{}", place.name, place.x, place.y))
+        .collect();
+    each.join("; ")
+}
+
+/// How `count` pictures are laid out.
+struct Layout {
+    columns: usize,
+    gap: u32,
+    size: (u32, u32),
+}
+
+impl Layout {
+    fn new(count: usize, width: u32, height: u32) -> Result<Self, StillError> {
+        let columns = match count {
+            0..=FEW => count.max(1),
+            _ => (1..=count).find(|n| n * n >= count).unwrap_or(count),
+        };
+        let rows = count.div_ceil(columns) as u64;
+        let gap = (width.min(height) / 40).max(2);
+        let length = |each: u32, times: u64| {
+            u64::from(each) * times + u64::from(gap) * times.saturating_sub(1)
+        };
+        let (all_width, all_height) = (length(width, columns as u64), length(height, rows));
+        let clipped = |length: u64| u32::try_from(length).unwrap_or(u32::MAX);
+        let size = (clipped(all_width), clipped(all_height));
+        if size.0 > LARGEST || size.1 > LARGEST {
+            return Err(StillError::Size(size.0, size.1));
+        }
+        Ok(Self { columns, gap, size })
+    }
+
+    fn place(&self, index: usize, width: u32, height: u32) -> (u32, u32) {
+        let (column, row) = ((index % self.columns) as u32, (index / self.columns) as u32);
+        (column * (width + self.gap), row * (height + self.gap))
+    }
+}
+
+/// Renders every colourway of a design as `request` asks (its size is that of each
+/// picture, its colourway is ignored) and lays them out. `on_pass` sees the number of the
+/// picture and of all pictures with each pass.
+///
+/// # Errors
+/// When the design has no colourways, the sheet would be too large, a picture cannot be
+/// made, or the job is cancelled.
+pub fn render_sheet(
+    design: &Arc<Design>,
+    request: &StillRequest,
+    store: &ExemplarStore,
+    job: &Job,
+    on_pass: &mut dyn FnMut(usize, usize, &Pass<'_>),
+) -> Result<Sheet, StillError> {
+    if design.colourways().is_empty() {
+        // No colourway is called "all", so this says what the design has.
+        Design::clone(design).with_colourway("all")?;
+    }
+    let (width, height) = (request.width, request.height);
+    let mut designs = vec![(AS_DESIGNED.to_owned(), Arc::clone(design))];
+    for colourway in design.colourways() {
+        let coloured = Design::clone(design).with_colourway(&colourway.name)?;
+        designs.push((colourway.name.clone(), Arc::new(coloured)));
+    }
+    let count = designs.len();
+    let layout = Layout::new(count, width, height)?;
+    let request = StillRequest {
+        colourway: None,
+        ..request.clone()
+    };
+    let clear = [1.0, 1.0, 1.0, 0.0];
+    let mut picture = png::Picture {
+        width: layout.size.0,
+        height: layout.size.1,
+        pixels: vec![clear; layout.size.0 as usize * layout.size.1 as usize],
+    };
+    let mut cloth: Option<PreparedCloth> = None;
+    let mut places = Vec::with_capacity(count);
+    let mut report = StillReport::default();
+    let mut metadata = png::Metadata::default();
+    for (index, (name, design)) in designs.into_iter().enumerate() {
+        let recoloured = cloth.as_mut().is_some_and(|cloth| cloth.recolour(&design));
+        let ready = match cloth.take() {
+            Some(ready) if recoloured => ready,
+            _ => prepare(&design, &request, store, job)?,
+        };
+        let still = render(&ready, &request, job, &mut |pass| {
+            on_pass(index, count, pass);
+        })?;
+        let (x, y) = layout.place(index, width, height);
+        paste(&mut picture, &still.picture(), x, y);
+        join(&mut report, &still, index == 0);
+        if index == 0 {
+            metadata.pixels_per_mm = Some(still.pixels_per_mm);
+            metadata.texts = still.texts;
+        }
+        places.push(SheetPlace {
+            name,
+            x,
+            y,
+            recoloured,
+        });
+        cloth = Some(ready);
+    }
+    (report.width, report.height) = layout.size;
+    metadata
+        .texts
+        .push(("Colourways".to_owned(), labels(&places)));
+    Ok(Sheet {
+        report,
+        places,
+        each: (width, height),
+        picture,
+        metadata,
+    })
+}
+
+/// Copies a picture into the sheet.
+fn paste(sheet: &mut png::Picture, picture: &png::Picture, x: u32, y: u32) {
+    let (across, width) = (sheet.width as usize, picture.width as usize);
+    for (row, pixels) in picture.pixels.chunks(width.max(1)).enumerate() {
+        let from = (y as usize + row) * across + x as usize;
+        sheet.pixels[from..from + width].copy_from_slice(pixels);
+    }
+}
+
+/// Adds what one picture took to the report of all.
+fn join(all: &mut StillReport, still: &Still, first: bool) {
+    let one = &still.report;
+    if first {
+        *all = one.clone();
+        return;
+    }
+    let paths =
+        all.paths_per_second * stage(all, "render") + one.paths_per_second * stage(one, "render");
+    for (name, seconds) in &one.seconds {
+        match all.seconds.iter_mut().find(|(known, _)| known == name) {
+            Some((_, sum)) => *sum += seconds,
+            None => all.seconds.push((name.clone(), *seconds)),
+        }
+    }
+    all.total_seconds += one.total_seconds;
+    let rendering = stage(all, "render");
+    if rendering > 0.0 {
+        all.paths_per_second = paths / rendering;
+    }
+    all.spp = all.spp.min(one.spp);
+    all.invalid_samples += one.invalid_samples;
+    all.majorant_violations += one.majorant_violations;
+    if let (Some(known), Some(error)) = (all.error, one.error)
+        && error > known
+    {
+        (all.error, all.error_interval) = (one.error, one.error_interval);
+    }
+}
+
+/// Seconds of a stage.
+fn stage(report: &StillReport, name: &str) -> f64 {
+    let stage = report.seconds.iter().find(|(known, _)| known == name);
+    stage.map_or(0.0, |(_, seconds)| *seconds)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_do_not_overlap_and_fill_the_sheet() {
+        for count in 1..30 {
+            let layout = Layout::new(count, 50, 30).unwrap();
+            let mut taken = vec![false; layout.size.0 as usize * layout.size.1 as usize];
+            for index in 0..count {
+                let (x, y) = layout.place(index, 50, 30);
+                for row in y..y + 30 {
+                    for column in x..x + 50 {
+                        let pixel = (row * layout.size.0 + column) as usize;
+                        assert!(!std::mem::replace(&mut taken[pixel], true), "{count}");
+                    }
+                }
+            }
+            assert!(taken[0]);
+            if count <= FEW {
+                assert_eq!(layout.size.1, 30, "few stand in one row");
+            }
+        }
+        assert!(Layout::new(2, 16_384, 10).is_err());
+        assert!(Layout::new(300, 1000, 1000).is_err());
+    }
+}
