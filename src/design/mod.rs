@@ -9,11 +9,13 @@
 //! | `pattern` | the weave, one bit a crossing |
 //! | `weaves` | weaves by notation ("2/2 twill", "1/7 satin move 3") |
 //! | `draft` | threading, tie-up and treadling, and the weave they make |
+//! | `derive` | from a weave back to a draft |
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
 //! | `document` | the design that holds all of these together |
 //! | `floats` | what a designer checks first |
 
+mod derive;
 mod document;
 mod draft;
 mod floats;
@@ -26,6 +28,7 @@ mod structure;
 mod weaves;
 mod yarn;
 
+pub use derive::{DeriveError, Loom, derive, shafts_needed};
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };

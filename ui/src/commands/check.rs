@@ -1,6 +1,6 @@
 //! `pickglass check`: floats, warnings and scale.
 
-use pickglass::design::{Density, FloatKind, FloatReport, Structure, floats};
+use pickglass::design::{Density, FloatKind, FloatReport, Structure, floats, shafts_needed};
 use serde_json::{Value, json};
 
 use crate::cli::CheckArgs;
@@ -69,15 +69,7 @@ fn shafts(opened: &Opened) -> usize {
     if let Structure::Draft(draft) = opened.design.structure() {
         return draft.shafts() as usize;
     }
-    let weave = opened.weave();
-    let mut columns = std::collections::BTreeSet::new();
-    for end in 0..weave.ends() {
-        let column: Vec<bool> = (0..weave.picks())
-            .map(|pick| weave.get(end, pick))
-            .collect();
-        columns.insert(column);
-    }
-    columns.len()
+    shafts_needed(opened.weave()) as usize
 }
 
 fn kind_name(kind: FloatKind) -> &'static str {
