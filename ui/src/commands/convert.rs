@@ -37,6 +37,12 @@ fn write(design: &Design, path: &Path, loom: &LoomArgs) -> anyhow::Result<Vec<St
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    if ending.as_deref() != Some("jc5") && (loom.like.is_some() || loom.loom.is_some()) {
+        anyhow::bail!(
+            "{}: --like and --loom are for loom files: end the name in .jc5",
+            path.display()
+        );
+    }
     let (bytes, lost) = match ending.as_deref() {
         Some("ron") => (ron::write(design)?.into_bytes(), Vec::new()),
         Some("wif") => {
