@@ -483,7 +483,11 @@ impl Grid {
                 None => threading.push(&[]),
             }
         }
-        let sinking = file.number("view/general/hebung", 1)? == Some(0);
+        let hebung = file.number("view/general/hebung", 1)?;
+        if hebung.is_none() {
+            warnings.whole("view/general/hebung is missing: a rising shed is taken");
+        }
+        let sinking = hebung == Some(0);
         let (width, _, cells) = &self.treadling;
         let pick_cells = |pick: usize| {
             let pick = if top { self.picks.1 - 1 - pick } else { pick };

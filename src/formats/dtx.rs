@@ -63,14 +63,11 @@ pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported,
         let first = file.section(section)?.rows().next()?;
         Some(first.1.to_owned())
     };
-    let notes: Vec<&str> = match file.section("notes") {
-        Some(notes) => notes.rows().map(|(_, line)| line).collect(),
-        None => Vec::new(),
-    };
+    let notes = read_notes(&file, &mut warnings);
     let sheet = Sheet {
         file: name,
         title: first_line("description").map(|title| without_path(&title)),
-        notes: notes.join("\n"),
+        notes,
         program: first_line("imprint").map(|version| format!("Fiberworks {version}")),
         structure: Structure::Draft(draft),
         warp,
@@ -84,6 +81,27 @@ pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported,
     };
     let wrong = |misfit: Misfit| SheetError::whole(name, misfit.problem, misfit.remedy);
     sheet.design(options, warnings).map_err(wrong)
+}
+
+/// More lines of notes than anybody writes.
+const MAX_NOTES: usize = 10_000;
+
+fn read_notes(file: &File<'_>, warnings: &mut Warnings) -> String {
+    let mut notes = String::new();
+    let Some(section) = file.section("notes") else {
+        return notes;
+    };
+    for (count, (line, note)) in section.rows().enumerate() {
+        if count >= MAX_NOTES {
+            warnings.at(line, format!("notes beyond {MAX_NOTES} lines are left out"));
+            break;
+        }
+        if count > 0 {
+            notes.push('\n');
+        }
+        notes.push_str(note);
+    }
+    notes
 }
 
 /// What stands between one `@@` line and the next.
