@@ -5,7 +5,9 @@
 
 use std::time::Instant;
 
-use pickglass::design::{Draft, Fill, Grid, Lifting, Region, Regions, Shed, Ties, floats};
+use pickglass::design::{
+    Draft, Fill, Grid, Lifting, Loom, MAX_SHAFTS, Region, Regions, Shed, Ties, derive, floats,
+};
 
 const ENDS: u32 = 5120;
 const PICKS: u32 = 6300;
@@ -41,7 +43,7 @@ fn a_jacquard_of_thirty_million_crossings() {
     let found = timed("floats", || floats(&weave));
     assert!(found.longest.warp_face >= 7 && found.unbound_ends.is_empty());
     let draft = timed("a shaft for each column", || {
-        Draft::from_pattern(&weave).unwrap()
+        derive(&weave, &Loom::dobby(MAX_SHAFTS)).unwrap()
     });
     let drawdown = timed("lift plan to weave", || draft.drawdown());
     assert_eq!(drawdown, weave);

@@ -342,49 +342,6 @@ impl Draft {
         }
         pattern
     }
-
-    /// A draft that weaves `pattern`: equal columns share a shaft, and each pick names the
-    /// shafts to lift.
-    ///
-    /// # Errors
-    /// [`DraftError::TooMany`] if it has more different columns than there can be shafts.
-    pub fn from_pattern(pattern: &WeavePattern) -> Result<Self, DraftError> {
-        let columns = pattern.transposed();
-        let mut shaft_of: BTreeMap<Vec<u64>, u16> = BTreeMap::new();
-        let mut first_end = Vec::new();
-        let mut threading = Ties::default();
-        for end in 0..pattern.ends() {
-            if shaft_of.len() >= MAX_SHAFTS as usize {
-                return Err(DraftError::TooMany(pattern.ends()));
-            }
-            let next = shaft_of.len() as u16;
-            let column: Vec<u64> = columns.pick_words(end).collect();
-            let shaft = *shaft_of.entry(column).or_insert_with(|| {
-                first_end.push(end);
-                next
-            });
-            threading.push(&[shaft]);
-        }
-        let mut plan = Ties::default();
-        let mut lifted = Vec::new();
-        for pick in 0..pattern.picks() {
-            lifted.clear();
-            for (shaft, &end) in first_end.iter().enumerate() {
-                if pattern.get(end, pick) {
-                    lifted.push(shaft as u16);
-                }
-            }
-            plan.push(&lifted);
-        }
-        let shafts = shaft_of.len() as u32;
-        Self::new(
-            shafts,
-            shafts,
-            Shed::Rising,
-            threading,
-            Lifting::LiftPlan(plan),
-        )
-    }
 }
 
 /// The ends on each shaft, as a whole row of bits where there are many and as a list
@@ -528,18 +485,6 @@ mod tests {
         )
         .unwrap();
         assert_eq!(draft.drawdown().to_string(), "....\n##.#\n.#.#\n##..\n");
-    }
-
-    #[test]
-    fn a_lift_plan_of_the_drawdown_weaves_the_same_cloth() {
-        let pattern = WeavePattern::from_fn(150, 90, |end, pick| {
-            (end * end + 3 * pick + end * pick) % 7 < 3
-        });
-        let draft = Draft::from_pattern(&pattern).unwrap();
-        assert_eq!(draft.drawdown(), pattern);
-        let mut other = pattern.clone();
-        other.set(149, 89, !pattern.get(149, 89));
-        assert_ne!(draft.drawdown(), other);
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //! | `weaves` | weaves by notation ("2/2 twill", "1/7 satin move 3"), and made of weaves |
 //! | `library` | weaves by name ("honeycomb 8"), with what they are for |
 //! | `draft` | threading, tie-up and treadling, and the weave they make |
+//! | `derive` | from a weave back to a draft |
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
 //! | `document` | the design that holds all of these together |
@@ -19,6 +20,7 @@
 
 pub mod checks;
 mod colourways;
+mod derive;
 mod document;
 mod draft;
 mod floats;
@@ -33,6 +35,7 @@ mod weaves;
 mod yarn;
 
 pub use colourways::{Colourway, ColourwayError, MAX_COLOURWAYS};
+pub use derive::{DeriveError, Loom, derive, shafts_needed};
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };

@@ -1,15 +1,23 @@
 //! One file a format, reading and writing.
 //!
 //! [`load`] recognises a design or draft by its content, not by its name. `ron` is the
-//! design document, `wif` the weavers' interchange format; `atomic` writes files so that
-//! nothing is ever half-written.
+//! design document, `wif` the weavers' interchange format, `dtx`, `wpo` and `dbw` the files
+//! of drafting programs, `jc5` those of jacquard looms; `sheet` is what drafts have in
+//! common. `atomic` writes files so that nothing is ever half-written.
 
 pub mod atomic;
+pub mod dbw;
+pub mod dtx;
 pub mod exr;
+pub mod jc5;
 pub mod png;
 pub mod presets;
 pub mod ron;
+mod sheet;
 pub mod wif;
+pub mod wpo;
+
+pub use sheet::{Place, SheetError};
 
 use std::io::Read;
 use std::path::Path;
@@ -32,6 +40,8 @@ pub struct LoadOptions {
     pub sett: Option<(f32, f32)>,
     /// What yarns are made of where the file does not say; `None` = cotton.
     pub family: Option<Family>,
+    /// Loom files are woven face down: what they lift shows on the back.
+    pub face_down: bool,
 }
 
 /// A file that could not be opened as a design: one line with the file, the place, what
@@ -54,7 +64,8 @@ pub enum FormatError {
     },
     /// Neither a design nor a draft.
     #[error(
-        "{file}: expected a design (.ron) or a draft (.wif), found {found}; choose another file"
+        "{file}: expected a design (.ron), a draft (.wif, .dtx, .wpo, .dbw) or a loom file (.jc5), \
+         found {found}; choose another file"
     )]
     Unknown {
         /// The file.
@@ -68,6 +79,9 @@ pub enum FormatError {
     /// A WIF with something wrong.
     #[error(transparent)]
     Wif(#[from] wif::WifError),
+    /// Another draft or a loom file with something wrong.
+    #[error(transparent)]
+    Sheet(#[from] SheetError),
     /// A sett that cannot be woven.
     #[error("{file}: {problem}; give another sett")]
     Sett {
@@ -86,6 +100,14 @@ pub const MAX_FILE: u64 = 1 << 28;
 /// # Errors
 /// [`FormatError`]: one line with the file, the place, what was expected and what to do.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Imported, FormatError> {
+    load_bytes(&read_bytes(path)?, &path.display().to_string(), options)
+}
+
+/// The bytes of a file, if they are no more than [`MAX_FILE`].
+///
+/// # Errors
+/// [`FormatError`] for a file that cannot be read or is too large.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FormatError> {
     let file = || path.display().to_string();
     let unreadable = |source| FormatError::Unreadable {
         file: file(),
@@ -101,7 +123,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Imported, FormatError>
     if bytes.len() as u64 > MAX_FILE {
         return Err(FormatError::TooLarge { file: file() });
     }
-    load_bytes(&bytes, &file(), options)
+    Ok(bytes)
 }
 
 /// As [`load`], for bytes already in memory; `name` is what messages call them.
@@ -117,6 +139,11 @@ pub fn load_bytes(
         let file = name.to_owned();
         return Err(FormatError::Unknown { file, found });
     }
+    for (recognises, read) in LOOM_FORMATS {
+        if recognises(bytes) {
+            return Ok(read(bytes, name, options)?);
+        }
+    }
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
     if ron::version(&start).is_none() {
         return Ok(wif::read_with(bytes, name, options)?);
@@ -127,6 +154,19 @@ pub fn load_bytes(
         warnings: Vec::new(),
     })
 }
+
+/// Draft and loom files: how each is known, and its reader.
+type LoomFormat = (
+    fn(&[u8]) -> bool,
+    fn(&[u8], &str, &LoadOptions) -> Result<Imported, SheetError>,
+);
+
+const LOOM_FORMATS: [LoomFormat; 4] = [
+    (dtx::recognises, dtx::read),
+    (wpo::recognises, wpo::read),
+    (dbw::recognises, dbw::read),
+    (jc5::recognises, jc5::read),
+];
 
 /// A design at the sett somebody asked for; unequal spacings keep their ratios.
 fn with_options(design: Design, name: &str, options: &LoadOptions) -> Result<Design, FormatError> {
@@ -153,7 +193,7 @@ fn with_options(design: Design, name: &str, options: &LoadOptions) -> Result<Des
 
 /// What bytes are that are certainly no text.
 fn other_kind(bytes: &[u8]) -> Option<&'static str> {
-    let kinds: [(&[u8], &str); 9] = [
+    let kinds: [(&[u8], &str); 8] = [
         (b"\x89PNG", "a PNG image"),
         (b"\xff\xd8\xff", "a JPEG image"),
         (b"GIF8", "a GIF image"),
@@ -161,9 +201,11 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
         (b"II*\0", "a TIFF image"),
         (b"MM\0*", "a TIFF image"),
         (b"PK\x03\x04", "an archive"),
-        (b"@@StartDTX", "a Fiberworks draft"),
         (b"{", "JSON"),
     ];
+    if wpo::recognises(bytes) {
+        return None;
+    }
     if bytes.is_empty() {
         return Some("an empty file");
     }

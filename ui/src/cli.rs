@@ -21,7 +21,7 @@ pub struct Cli {
 /// What `pickglass` does when it is not given a command: opens the window.
 #[derive(Debug, Args)]
 pub struct WindowArgs {
-    /// A design (.ron), a draft (.wif) or a preset's name
+    /// A design (.ron), a draft or loom file, or a preset's name
     pub design: Option<String>,
     #[command(flatten)]
     pub sett: SettArgs,
@@ -68,7 +68,7 @@ pub struct SettArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// A design (.ron), a draft (.wif) or a preset's name
+    /// A design (.ron), a draft or loom file, or a preset's name
     #[arg(value_name = "FILE")]
     pub design: String,
     #[command(flatten)]
@@ -80,17 +80,33 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// A design (.ron), a draft (.wif) or a preset's name
+    /// A design (.ron), a draft or loom file, or a preset's name
     #[arg(value_name = "IN")]
     pub input: String,
-    /// The file to write; its ending chooses the format (.ron or .wif)
+    /// The file to write; its ending chooses the format (.ron, .wif or .jc5)
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
     #[command(flatten)]
     pub sett: SettArgs,
+    #[command(flatten)]
+    pub loom: LoomArgs,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+/// The loom that a .jc5 is for.
+#[derive(Debug, Args)]
+pub struct LoomArgs {
+    /// Write into the hooks of this file of the loom (.jc5)
+    #[arg(long, value_name = "TEMPLATE", conflicts_with = "loom")]
+    pub like: Option<PathBuf>,
+    /// Write for the hooks of a loom: a name, or a .ron file as in presets/looms
+    #[arg(long, value_name = "PRESET")]
+    pub loom: Option<String>,
+    /// Loom files read or written are of cloth woven face down
+    #[arg(long)]
+    pub face_down: bool,
 }
 
 /// How blocks are assigned to crossings.
@@ -106,7 +122,7 @@ pub enum MethodArg {
 
 #[derive(Debug, Args)]
 pub struct SynthesizeArgs {
-    /// A design (.ron), a draft (.wif) or a preset's name
+    /// A design (.ron), a draft or loom file, or a preset's name
     pub design: String,
     /// How blocks are assigned to crossings
     #[arg(long, value_enum, default_value_t = MethodArg::Dp)]
@@ -140,7 +156,7 @@ pub enum RendererArg {
 #[derive(Debug, Args)]
 #[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
 pub struct StillArgs {
-    /// A design (.ron), a draft (.wif) or a preset's name
+    /// A design (.ron), a draft or loom file, or a preset's name
     pub design: String,
     /// The picture to write, .png or .exr
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]

@@ -28,6 +28,15 @@ pub struct Opened {
 impl Opened {
     /// Opens a design argument. A preset's name wins; `./twill` is a file all the same.
     pub fn argument(argument: &str, sett: &SettArgs) -> anyhow::Result<Self> {
+        Self::argument_with(argument, sett, LoadOptions::default())
+    }
+
+    /// As [`Self::argument`], with what else is known of the file.
+    pub fn argument_with(
+        argument: &str,
+        sett: &SettArgs,
+        options: LoadOptions,
+    ) -> anyhow::Result<Self> {
         let sett = sett
             .sett
             .map(|sett| (sett.ends_per_cm as f32, sett.picks_per_cm as f32));
@@ -42,7 +51,7 @@ impl Opened {
             None if !argument.contains(['.', '/', '\\']) && !Path::new(argument).exists() => {
                 Err(no_such_preset(argument))
             }
-            None => Self::load(Path::new(argument), &LoadOptions { sett, family: None }),
+            None => Self::load(Path::new(argument), &LoadOptions { sett, ..options }),
         }
     }
 
@@ -157,7 +166,7 @@ impl Opened {
 fn no_such_preset(name: &str) -> anyhow::Error {
     let known: Vec<_> = presets::names().collect();
     anyhow::anyhow!(
-        "{name}: no file and no preset is called this: give a .ron or .wif file, or one of {}",
+        "{name}: no file and no preset is called this: give a design, draft or loom file, or one of {}",
         known.join(", ")
     )
 }

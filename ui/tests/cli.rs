@@ -238,6 +238,44 @@ fn a_still_is_written_and_reported() {
 }
 
 #[test]
+fn a_loom_file_is_written_for_a_loom_and_read_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |line: &[&str]| pickglass(folder.path(), line);
+    let loom = ["convert", "silk-satin", "a.jc5", "--loom", "staubli-5120"];
+    let report = json(&run(&[&loom[..], &["--json"]].concat()));
+    has_keys(&report, &["written", "lost"]);
+    let first = std::fs::read(folder.path().join("a.jc5")).expect("a file");
+    let check = json(&run(&["check", "a.jc5", "--json"]));
+    assert_eq!(check["ends"], 4800);
+    assert_eq!(check["shafts"], 8);
+    // Its own hooks, unchanged: the same bytes.
+    json(&run(&[
+        "convert", "a.jc5", "b.jc5", "--like", "a.jc5", "--json",
+    ]));
+    let again = std::fs::read(folder.path().join("b.jc5")).expect("a file");
+    assert!(first == again);
+    json(&run(&[
+        &loom[..2],
+        &["c.jc5", "--like", "a.jc5", "--face-down", "--json"],
+    ]
+    .concat()));
+    let down = std::fs::read(folder.path().join("c.jc5")).expect("a file");
+    assert!(down.len() == first.len() && down != first);
+    for line in [
+        &["convert", "silk-satin", "d.jc5"][..],
+        &["convert", "silk-satin", "d.jc5", "--loom", "nobody"],
+        &["convert", "silk-satin", "d.jc5", "--like", "absent.jc5"],
+        &["convert", "silk-satin", "d.wif", "--like", "a.jc5"],
+    ] {
+        let text = refused(&run(line), 1);
+        assert_eq!(text.trim_end().lines().count(), 1, "{line:?}: {text}");
+        assert!(text.matches([':', ';']).count() >= 2, "{text}");
+    }
+    let both = ["convert", "x", "d.jc5", "--like", "a.jc5", "--loom", "b"];
+    refused(&run(&both), 2);
+}
+
+#[test]
 fn errors_are_one_line_and_exit_1() {
     let folder = tempfile::tempdir().expect("a folder");
     for line in [

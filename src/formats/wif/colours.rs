@@ -3,19 +3,17 @@
 use std::collections::BTreeMap;
 
 use super::WifError;
-use super::read::{File, Warnings};
+use super::read::File;
 use super::text::{bare, shorten};
 use super::threads::{Direction, Threads};
 use crate::design::Srgb;
+use crate::formats::sheet::{NO_PALETTE, Warnings};
 
 /// The file's colours by their numbers.
 pub(super) struct Palette {
     /// Number and colour, sorted by number; empty where the file has no table.
     table: Vec<(u32, Srgb)>,
 }
-
-/// Colours of a file without a palette (Fiberworks' own).
-const NO_PALETTE: [Srgb; 2] = [Srgb(255, 255, 255), Srgb(0, 0, 255)];
 
 impl Palette {
     pub fn read(file: &File<'_>, warnings: &mut Warnings) -> Result<Self, WifError> {

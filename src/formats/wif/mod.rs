@@ -35,8 +35,8 @@
 
 mod colours;
 mod read;
-mod text;
-mod threads;
+pub(super) mod text;
+pub(super) mod threads;
 mod write;
 
 pub use read::{read, read_with};

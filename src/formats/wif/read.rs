@@ -4,11 +4,14 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::text::{self, Section, bare, boolean, same, shorten};
-use super::threads::{self, Direction, Spacing};
+use super::threads::{self, Direction};
 use super::{DEFAULT_SPACING_CM, MAX_THREADS, WifError, colours};
 use crate::design::{
-    Design, Draft, Family, ForeignSection, Lifting, MAX_SHAFTS, Origin, Shed, Structure, Ties,
-    YarnMaps, check_size, usual_sett,
+    Draft, FirstEnd, FirstPick, ForeignSection, Lifting, MAX_SHAFTS, Shed, Structure, Ties,
+    check_size,
+};
+use crate::formats::sheet::{
+    Active, Misfit, Sheet, Warnings, at_least, tieup_or_plan, warn_unused_threads, without_path,
 };
 use crate::formats::{Imported, LoadOptions};
 
@@ -38,49 +41,6 @@ const TEXTS: [&str; 2] = ["TEXT", "NOTES"];
 
 pub(super) fn known(name: &str) -> bool {
     OWN.iter().chain(&TEXTS).any(|own| same(own, name))
-}
-
-/// Most warnings that are written out; a broken file can give one a line.
-const MAX_WARNINGS: usize = 40;
-
-/// What the reader had to decide for itself.
-#[derive(Debug, Default)]
-pub(super) struct Warnings {
-    list: Vec<String>,
-    more: usize,
-}
-
-impl Warnings {
-    pub fn at(&mut self, line: u32, what: impl AsRef<str>) {
-        self.add(|| format!("line {line}: {}", what.as_ref()));
-    }
-
-    /// One warning more that nobody would read: not worth its words.
-    fn flooded(&mut self) -> bool {
-        let full = self.list.len() >= MAX_WARNINGS;
-        self.more += usize::from(full);
-        full
-    }
-
-    pub fn whole(&mut self, what: impl Into<String>) {
-        self.add(|| what.into());
-    }
-
-    fn add(&mut self, what: impl FnOnce() -> String) {
-        if self.list.len() < MAX_WARNINGS {
-            self.list.push(what());
-        } else {
-            self.more += 1;
-        }
-    }
-
-    fn finish(mut self) -> Vec<String> {
-        if self.more > 0 {
-            self.list
-                .push(format!("and {} more of this kind", self.more));
-        }
-        self.list
-    }
 }
 
 /// The sections of one file, by name.
@@ -165,46 +125,28 @@ pub fn read_with(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Impo
     let base = u32::from(!zero_based);
     let warp = threads::read(&file, Direction::Warp, draft.ends(), base, &mut warnings)?;
     let weft = threads::read(&file, Direction::Weft, draft.picks(), base, &mut warnings)?;
-    let family = options.family.unwrap_or(Family::Cotton);
-    let spacing = Spacing::resolve(&file, &warp, &weft, options, &mut warnings)?;
-    let chosen_warp = palette.choose(&file, Direction::Warp, &warp, &active.ends, &mut warnings)?;
-    let chosen_weft =
+    let warp_colours =
+        palette.choose(&file, Direction::Warp, &warp, &active.ends, &mut warnings)?;
+    let weft_colours =
         palette.choose(&file, Direction::Weft, &weft, &active.picks, &mut warnings)?;
-    let (yarns, warp_order, weft_order) =
-        threads::yarns(&palette, family, &spacing, &chosen_warp, &chosen_weft)
-            .map_err(|problem| WifError::whole(name, problem, "use fewer colours"))?;
-    let maps = YarnMaps::orders(warp_order, weft_order);
-    let sett = spacing.sett(usual_sett(&yarns, &maps));
     let (title, notes) = read_texts(&file, &mut warnings);
-    let title = title.unwrap_or_else(|| stem(name));
-    let wrong = |reason: String| WifError::whole(name, reason, "correct the draft");
-    let mut design = Design::new(title, Structure::Draft(draft), yarns, maps, sett)
-        .map_err(|error| wrong(error.to_string()))?;
-    design.notes = notes;
-    design.origin = Origin {
-        program: file
-            .value("WIF", "Source Program")
-            .map(|(_, program)| program)
-            .filter(|program| !program.is_empty()),
-        sections: foreign(&file),
-        ends: warp.stated(),
-        picks: weft.stated(),
+    let sheet = Sheet {
+        file: name,
+        title,
+        notes,
+        program: file.value("WIF", "Source Program").map(|found| found.1),
+        structure: Structure::Draft(draft),
+        warp,
+        weft,
+        warp_colours,
+        weft_colours,
         palette: palette.colours(),
-        ..Origin::default()
+        sections: foreign(&file),
+        first_end: FirstEnd::Left,
+        first_pick: FirstPick::Bottom,
     };
-    Ok(Imported {
-        design,
-        warnings: warnings.finish(),
-    })
-}
-
-/// The file's name without folders and ending.
-fn stem(name: &str) -> String {
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    match last.rsplit_once('.') {
-        Some((stem, _)) if !stem.is_empty() => stem.to_owned(),
-        _ => last.to_owned(),
-    }
+    let wrong = |misfit: Misfit| WifError::whole(name, misfit.problem, misfit.remedy);
+    sheet.design(options, warnings).map_err(wrong)
 }
 
 /// Warns about what is odd in the file's shape but does no harm.
@@ -235,16 +177,6 @@ fn check_shape(file: &File<'_>, warnings: &mut Warnings) {
             }
         }
     }
-}
-
-/// A title without the folders that some programs put before it.
-fn without_path(title: &str) -> String {
-    let drive = title.get(1..3) == Some(":\\");
-    let name = match title.rsplit_once('\\') {
-        Some((_, name)) if drive => name,
-        _ => title,
-    };
-    name.trim().to_owned()
 }
 
 /// Sections that a design has no place for.
@@ -444,20 +376,6 @@ fn thread_count(
     }
 }
 
-/// How many there are: as declared, or as many as are used.
-fn at_least(declared: Option<u32>, used: u32, what: &str, warnings: &mut Warnings) -> u32 {
-    match declared {
-        Some(declared) if declared >= used => declared,
-        Some(declared) if declared > 0 => {
-            warnings.whole(format!(
-                "{what}={declared} is declared, but {used} are used: there are {used}"
-            ));
-            used
-        }
-        _ => used,
-    }
-}
-
 /// The draft, and whether the file counts from 0.
 fn read_draft(file: &File<'_>, warnings: &mut Warnings) -> Result<(Draft, bool), WifError> {
     let threading = Rows::read(file, "THREADING", warnings)?;
@@ -599,52 +517,8 @@ fn choose_lifting(
     if loom.is_some_and(|(_, loom)| same(&loom, "Lift Plan") || same(&loom, "LiftPlan")) {
         return planned;
     }
-    if treadled.drawdown() != planned.drawdown() {
-        let line = file.line_of("LIFTPLAN").unwrap_or(1);
-        let what = "the lift plan weaves another cloth than tie-up and treadling";
-        warnings.at(line, format!("{what}; tie-up and treadling count"));
-    }
-    treadled
-}
-
-/// Ends on a shaft and picks that lift something.
-struct Active {
-    ends: Vec<bool>,
-    picks: Vec<bool>,
-}
-
-impl Active {
-    fn of(draft: &Draft) -> Self {
-        let lifts = match draft.lifting() {
-            Lifting::Treadled { treadling, .. } => treadling,
-            Lifting::LiftPlan(plan) => plan,
-        };
-        Self {
-            ends: draft.threading().iter().map(|on| !on.is_empty()).collect(),
-            picks: lifts.iter().map(|set| !set.is_empty()).collect(),
-        }
-    }
-}
-
-fn warn_unused_threads(draft: &Draft, warnings: &mut Warnings) {
-    let active = Active::of(draft);
-    for (flags, thread, does) in [
-        (&active.ends, "end", "on no shaft"),
-        (&active.picks, "pick", "without a lift"),
-    ] {
-        let idle = flags.iter().filter(|&&used| !used).count();
-        if idle == 0 {
-            continue;
-        }
-        let last = flags.iter().rposition(|&used| used).map_or(0, |at| at + 1);
-        let place = if flags.len() - last == idle {
-            format!(": all after {thread} {last}")
-        } else {
-            String::new()
-        };
-        let plural = if idle == 1 { " is" } else { "s are" };
-        warnings.whole(format!("{idle} {thread}{plural} {does}{place}"));
-    }
+    let line = file.line_of("LIFTPLAN").unwrap_or(1);
+    tieup_or_plan(treadled, &planned, line, warnings)
 }
 
 /// Whether a spacing in mm is the default of a drawing program rather than a sett.

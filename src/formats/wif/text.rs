@@ -11,7 +11,7 @@ use super::WifError;
 const MAX_SECTIONS: usize = 4096;
 
 /// The text of a file: UTF-8 with or without a byte order mark, or else Latin-1.
-pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
+pub(in crate::formats) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => Cow::Borrowed(text),
@@ -42,7 +42,7 @@ pub(super) struct Entry<'t> {
 }
 
 /// Lines with their terminators (`\n`, `\r\n` or a lone `\r`) taken off.
-fn lines(text: &str) -> impl Iterator<Item = &str> {
+pub(in crate::formats) fn lines(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = Some(text);
     std::iter::from_fn(move || {
         let text = rest.take()?;
@@ -210,7 +210,7 @@ pub(super) fn bare(value: &str) -> &str {
 }
 
 /// At most 40 characters of a text, for a message.
-pub(super) fn shorten(text: &str) -> String {
+pub(in crate::formats) fn shorten(text: &str) -> String {
     let mut short: String = text
         .chars()
         .take(40)

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::WifError;
-use super::colours::{Palette, channels};
-use super::read::{File, Warnings, is_program_default};
+use super::colours::channels;
+use super::read::{File, is_program_default};
 use super::text::{bare, same, shorten};
 use crate::design::{
     Density, Family, MAX_PITCH_MM, MIN_PITCH_MM, Sett, Srgb, StatedThreads, Yarn, YarnId,
 };
 use crate::formats::LoadOptions;
+use crate::formats::sheet::Warnings;
 
 /// Warp or weft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +47,7 @@ enum List {
 }
 
 /// The threads of one direction as the file describes them.
-pub(super) struct Threads {
+pub(in crate::formats) struct Threads {
     /// Default colour number, with its line.
     pub default_colour: Option<(u32, u32)>,
     /// Default colour given as channels, for files without a table.
@@ -63,6 +64,23 @@ pub(super) struct Threads {
 }
 
 impl Threads {
+    /// As many threads as another format lists, with their usual spacing in a unit and
+    /// that of single threads (from 0).
+    pub fn listed(count: usize, spacing: Option<(&str, f32)>, spacings: Vec<(u32, f32)>) -> Self {
+        let (unit, spacing) = spacing.unzip();
+        Self {
+            default_colour: None,
+            default_rgb: None,
+            colours: vec![None; count],
+            unit: unit.map(str::to_owned),
+            unit_mm: unit.and_then(unit_mm),
+            spacing,
+            thickness: None,
+            spacings,
+            thicknesses: Vec::new(),
+        }
+    }
+
     /// What is written back as long as nobody chooses a sett.
     pub fn stated(&self) -> Option<StatedThreads> {
         let says = self.spacing.is_some()
@@ -284,7 +302,7 @@ fn colours(
 }
 
 /// Pitches and drawn widths in mm, as far as the file or the caller says anything.
-pub(super) struct Spacing {
+pub(in crate::formats) struct Spacing {
     ends: Side,
     picks: Side,
     assumed: bool,
@@ -303,12 +321,11 @@ struct Side {
 
 impl Spacing {
     pub fn resolve(
-        file: &File<'_>,
         warp: &Threads,
         weft: &Threads,
         options: &LoadOptions,
         warnings: &mut Warnings,
-    ) -> Result<Self, WifError> {
+    ) -> Result<Self, String> {
         let millimetres = |threads: &Threads| Some(threads.spacing? * threads.unit_mm?);
         let stated = [millimetres(warp), millimetres(weft)];
         let believed = stated.map(|spacing| {
@@ -319,8 +336,9 @@ impl Spacing {
         if let Some((ends, picks)) = options.sett {
             for (per_cm, what) in [(ends, "ends"), (picks, "picks")] {
                 if !(MIN_PITCH_MM..=MAX_PITCH_MM).contains(&(10.0 / per_cm)) {
-                    let problem = format!("expected 0.1 to 10000 {what} per cm, found {per_cm}");
-                    return Err(WifError::whole(file.name, problem, "give another sett"));
+                    return Err(format!(
+                        "expected 0.1 to 10000 {what} per cm, found {per_cm}"
+                    ));
                 }
             }
             return Ok(Self {
@@ -337,7 +355,7 @@ impl Spacing {
                 ));
             } else if mm.is_some_and(is_program_default) {
                 warnings.whole(format!(
-                    "[{side}] Spacing of 0.212 cm is a drawing program's default, no sett: what \
+                    "[{side}] spacing of 0.212 cm is a drawing program's default, no sett: what \
                      is usual for the yarn is taken; give a sett"
                 ));
             } else if mm.is_some_and(|mm| !(MIN_PITCH_MM..=MAX_PITCH_MM).contains(&mm)) {
@@ -432,10 +450,9 @@ impl Side {
 
 /// The yarns in use, and which each end and pick is: one yarn for each colour number and
 /// diameter.
-pub(super) type Yarns = (Vec<Yarn>, Vec<YarnId>, Vec<YarnId>);
+pub(in crate::formats) type Yarns = (Vec<Yarn>, Vec<YarnId>, Vec<YarnId>);
 
-pub(super) fn yarns(
-    palette: &Palette,
+pub(in crate::formats) fn yarns(
     family: Family,
     spacing: &Spacing,
     warp: &[(u32, Srgb)],
@@ -454,7 +471,6 @@ pub(super) fn yarns(
                     let id = u16::try_from(yarns.len())
                         .map(YarnId)
                         .map_err(|_| "expected at most 65536 different yarns".to_owned())?;
-                    let colour = palette.colour(number).unwrap_or(colour);
                     yarns.push(Yarn {
                         diameter_mm,
                         ..Yarn::new(format!("colour {number}"), family, colour)

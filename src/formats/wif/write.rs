@@ -7,8 +7,8 @@ use super::read::known;
 use super::threads::unit_mm;
 use super::{MAX_THREADS, WifError};
 use crate::design::{
-    Density, Design, Draft, Lifting, MAX_CROSSINGS, Repeat, Shed, Srgb, StatedThreads, Structure,
-    YarnId, YarnMap,
+    Density, DeriveError, Design, Draft, Lifting, Loom, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed,
+    Srgb, StatedThreads, Structure, WeavePattern, YarnId, YarnMap, derive,
 };
 
 /// A written file and what of the design it does not hold.
@@ -23,8 +23,15 @@ pub struct Written {
 /// The most numbers a lift plan may have; beyond, no program opens the file.
 const MAX_LIFTS: u64 = 1 << 24;
 
-/// Writes a design as WIF 1.1. Weaves that are no draft get a shaft for each different
-/// column and a lift plan.
+/// The most shafts and treadles of a drawdown that is written as a tie-up; beyond, no loom
+/// has treadles and a lift plan says the same.
+const MOST_TREADLED: u32 = 64;
+
+/// The most shafts that programs read (DrawBoy).
+const MOST_READ: u32 = 40;
+
+/// Writes a design as WIF 1.1. Weaves that are no draft get the draft of fewest shafts, with
+/// a tie-up up to 64 shafts and treadles and a lift plan beyond.
 ///
 /// # Errors
 /// [`WifError`] if the design is too large for shafts; export an image then.
@@ -37,8 +44,8 @@ pub fn write(design: &Design) -> Result<Written, WifError> {
             if matches!(other, Structure::Regions(_)) {
                 lost.push("regions and corrections: only the weave they make is written".into());
             }
-            drawn = Draft::from_pattern(&design.weave())
-                .map_err(|error| refused(design, error.to_string()))?;
+            drawn =
+                draft_of(&design.weave()).map_err(|error| refused(design, error.to_string()))?;
             &drawn
         }
     };
@@ -54,14 +61,26 @@ pub fn write(design: &Design) -> Result<Written, WifError> {
         let problem = format!("its lift plan would hold {total} numbers");
         return Err(refused(design, problem));
     }
-    if draft.shafts() > 40 {
+    if draft.shafts() > MOST_READ {
         lost.push(format!(
-            "nothing yet, but {} shafts are more than most programs read (40)",
+            "nothing yet, but {} shafts are more than most programs read ({MOST_READ})",
             draft.shafts()
         ));
     }
     let text = Writer::new(design).all(draft, size);
     Ok(Written { text, lost })
+}
+
+fn draft_of(weave: &WeavePattern) -> Result<Draft, DeriveError> {
+    let loom = Loom {
+        shafts: MOST_TREADLED,
+        treadles: MOST_TREADLED,
+        dobby: true,
+    };
+    match derive(weave, &loom) {
+        Err(DeriveError::Shafts { .. }) => derive(weave, &Loom::dobby(MAX_SHAFTS)),
+        answer => answer,
+    }
 }
 
 fn refused(design: &Design, problem: String) -> WifError {
