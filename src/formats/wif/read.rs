@@ -10,7 +10,7 @@ use crate::design::{
     Design, Draft, Family, ForeignSection, Lifting, MAX_SHAFTS, Origin, Shed, Structure, Ties,
     YarnMaps, check_size, usual_sett,
 };
-use crate::formats::{Imported, LoadOptions};
+use crate::formats::{Imported, LoadOptions, stem};
 
 /// The sections a design has a place for; all others are kept word for word.
 const OWN: [&str; 17] = [
@@ -196,15 +196,6 @@ pub fn read_with(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Impo
         design,
         warnings: warnings.finish(),
     })
-}
-
-/// The file's name without folders and ending.
-fn stem(name: &str) -> String {
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    match last.rsplit_once('.') {
-        Some((stem, _)) if !stem.is_empty() => stem.to_owned(),
-        _ => last.to_owned(),
-    }
 }
 
 /// Warns about what is odd in the file's shape but does no harm.

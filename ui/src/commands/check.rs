@@ -11,7 +11,7 @@ use crate::out;
 const SNAG_MM: f32 = 5.0;
 
 pub fn run(args: &CheckArgs) -> anyhow::Result<()> {
-    let opened = Opened::argument(&args.design, &args.sett)?;
+    let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     let report = floats(opened.weave());
     let mut warnings = opened.warnings.clone();
     warnings.extend(remarks(&opened, &report));
