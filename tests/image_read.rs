@@ -500,7 +500,8 @@ enum Expected {
 fn the_collection_is_read_warned_about_or_refused() {
     use Expected::{Read, Refused};
     let Some(folder) = folder() else { return };
-    // Sizes, colours and formats as Pillow and tifffile give them.
+    // Sizes, colours and formats as Pillow and tifffile give them. The chessboard has 8-bit
+    // greys in 16 bits, so that all it shows is black and a hair lighter than black.
     let expected = [
         ("Bad_reallybig.bmp", Refused("3000000 × 2000000")),
         ("Bad_shortfile.bmp", Refused("cannot hold them")),
@@ -511,10 +512,7 @@ fn the_collection_is_read_warned_about_or_refused() {
         ("Info_8_Bit.bmp", Read(6, 6, Some(3), "artwork")),
         ("astronaut.png", Read(512, 512, None, "picture")),
         ("checker_bilevel.png", Read(10, 10, Some(2), "weave")),
-        (
-            "chessboard_GRAY_U16.tif",
-            Read(200, 200, Some(8), "artwork"),
-        ),
+        ("chessboard_GRAY_U16.tif", Read(200, 200, Some(2), "weave")),
         ("coffee.png", Read(600, 400, None, "picture")),
         ("fax4.tiff", Read(1080, 671, Some(2), "weave")),
         ("horse.png", Read(400, 328, Some(128), "picture")),

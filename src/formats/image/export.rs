@@ -223,7 +223,7 @@ fn yarns(
         crate::design::YarnMap::Crossings(grid) => grid.iter().collect(),
     };
     if let Some(order) = map.order()
-        && threads as usize % order.len() != 0
+        && !(threads as usize).is_multiple_of(order.len())
     {
         lost.push(format!(
             "the yarn order of {} threads: it is cut off after the weave's {threads}",

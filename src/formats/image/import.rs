@@ -5,19 +5,23 @@
 //! * **Artwork**: every colour becomes a region, numbered from dark to light, with a first
 //!   weave from the shaded 8-end satin: 7/1 (nearly all warp) for the darkest to 1/7
 //!   (nearly all weft) for the lightest, the steps between spread evenly.
-//! * **Warp, weft**: every colour becomes a yarn. Columns (warp) or rows (weft) of one
-//!   colour each make an order, which a loom can weave; anything else is a map by crossing.
+//! * **Warp, weft**: see `yarn_maps`.
 
+use super::numbers::Numbers;
 use super::raster::{Colours, MAX_COLOURS, Pixels, Raster, luma};
-use super::{Black, Decoded, Fault, ImageAs, ImageError, ImageReading, Key};
+use super::yarn_maps::yarns_only;
+use super::{Black, Decoded, Fault, ImageAs, ImageError, ImageReading};
 use crate::design::{
-    Density, Design, Family, Fill, Filled, FirstEnd, FirstPick, Grid, Origin, Region, Regions,
-    Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps, usual_sett,
+    Density, Design, DesignError, Family, Fill, FirstEnd, FirstPick, Grid, Origin, Region, Regions,
+    Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
 use crate::formats::{Imported, LoadOptions, stem};
 
 /// The most colours that are taken for artwork without being told.
 const FLAT_COLOURS: usize = 64;
+
+/// A difference in luma that is hard to see.
+const CLOSE: f32 = 48.0;
 
 /// Yarns of a design whose image says nothing about them: dark warp, light weft.
 const DARK: Srgb = Srgb(0x24, 0x2b, 0x3a);
@@ -77,7 +81,7 @@ pub fn design(decoded: Decoded, name: &str, options: &LoadOptions) -> Result<Imp
             None => usual_sett(&yarns, &maps),
         },
     };
-    let wrong = |error: crate::design::DesignError| {
+    let wrong = |error: DesignError| {
         Fault::new(error.to_string(), "give another sett or image").named(name)
     };
     let mut design = Design::new(stem(name), structure, yarns, maps, sett).map_err(wrong)?;
@@ -133,7 +137,8 @@ fn picture(colours: &Colours, name: &str) -> ImageError {
     }
 }
 
-type Parts = (Structure, Vec<Yarn>, YarnMaps);
+/// Where the weave is from, the yarns and where they lie.
+pub(super) type Parts = (Structure, Vec<Yarn>, YarnMaps);
 
 fn dark_and_light(family: Family) -> (Vec<Yarn>, YarnMaps) {
     let yarns = vec![
@@ -172,6 +177,12 @@ fn weave(
             "; {} of pixels are neither black nor white",
             percent(strays as f64 / all)
         );
+    }
+    if let Colours::Few(few) = colours
+        && let [(a, _), (b, _)] = few.as_slice()
+        && (luma(*a) - luma(*b)).abs() < CLOSE
+    {
+        line += &format!("; its two colours hardly differ ({a}, {b}): check it");
     }
     warnings.push(line);
     let pattern = pattern(&raster, reading, black);
@@ -258,92 +269,6 @@ fn pattern(raster: &Raster, reading: ImageReading, black: impl Fn(Srgb) -> bool)
     }
 }
 
-/// The colours of an image as numbers: regions or yarns.
-struct Numbers {
-    /// Colour of each number.
-    colours: Vec<Srgb>,
-    /// Number of each palette index, or of each colour in order of colour.
-    of_index: Vec<u8>,
-    of_colour: Vec<(Srgb, u8)>,
-}
-
-impl Numbers {
-    fn of(raster: &Raster, colours: &Colours, key: Key) -> Result<Self, Fault> {
-        if key == Key::Index {
-            let Some(counts) = raster.index_counts() else {
-                let problem = "expected palette indices (--key index), found true colours";
-                return Err(Fault::new(problem, "use --key rgb, or save it indexed"));
-            };
-            let used = counts
-                .iter()
-                .rposition(|&count| count > 0)
-                .map_or(1, |last| last + 1);
-            let used = used.min(MAX_COLOURS);
-            return Ok(Self {
-                colours: raster.palette()[..used].to_vec(),
-                of_index: (0..used).map(|number| number as u8).collect(),
-                of_colour: Vec::new(),
-            });
-        }
-        let Colours::Few(few) = colours else {
-            let problem = format!("expected at most {MAX_COLOURS} flat colours, found more");
-            return Err(Fault {
-                problem,
-                remedy: "reduce its colours with `pickglass posterize`, or save it indexed",
-            });
-        };
-        let mut sorted: Vec<Srgb> = few.iter().map(|entry| entry.0).collect();
-        sorted.sort_by(|a, b| luma(*a).total_cmp(&luma(*b)).then(a.cmp(b)));
-        let mut of_colour: Vec<(Srgb, u8)> = sorted
-            .iter()
-            .enumerate()
-            .map(|(number, &colour)| (colour, number as u8))
-            .collect();
-        of_colour.sort_unstable();
-        let number = |colour: &Srgb| match of_colour.binary_search_by_key(colour, |known| known.0) {
-            Ok(at) => of_colour[at].1,
-            Err(_) => 0,
-        };
-        let of_index = raster.palette().iter().map(number).collect();
-        Ok(Self {
-            colours: sorted,
-            of_index,
-            of_colour,
-        })
-    }
-
-    /// Asks for the number at crossings (end, pick).
-    fn reader<'r>(
-        &'r self,
-        raster: &'r Raster,
-        reading: ImageReading,
-    ) -> impl FnMut(u32, u32) -> u16 + 'r {
-        let (width, height) = (raster.width(), raster.height());
-        let turned = reading.corner.turned();
-        let flipped = turned != reading.mirror;
-        let mut last = None;
-        move |end, pick| {
-            let x = if flipped { width - 1 - end } else { end };
-            let y = if turned { pick } else { height - 1 - pick };
-            if let Some(index) = raster.index(x, y) {
-                return u16::from(self.of_index[usize::from(index)]);
-            }
-            let colour = raster.colour(x, y);
-            match last {
-                Some((known, number)) if known == colour => number,
-                _ => {
-                    let found = self
-                        .of_colour
-                        .binary_search_by_key(&colour, |known| known.0);
-                    let number = found.map_or(0, |at| u16::from(self.of_colour[at].1));
-                    last = Some((colour, number));
-                    number
-                }
-            }
-        }
-    }
-}
-
 fn artwork(
     raster: Raster,
     colours: &Colours,
@@ -413,89 +338,6 @@ fn shade(rank: usize, count: usize, colour: Srgb) -> String {
     format!("{}/{} satin", 7 - lighter, 1 + lighter)
 }
 
-/// A map of yarns, and the yarns it names.
-fn yarn_map(
-    raster: &Raster,
-    what: ImageAs,
-    reading: ImageReading,
-    family: Family,
-) -> Result<(YarnMap, Vec<Yarn>), Fault> {
-    let numbers = Numbers::of(raster, &raster.colours(), reading.key)?;
-    let yarns = numbers
-        .colours
-        .iter()
-        .map(|&colour| Yarn::new(colour.to_string(), family, colour))
-        .collect();
-    let (ends, picks) = (raster.width(), raster.height());
-    let mut at = numbers.reader(raster, reading);
-    let along_warp = what == ImageAs::Warp;
-    let order: Vec<YarnId> = match along_warp {
-        true => (0..ends).map(|end| YarnId(at(end, 0))).collect(),
-        false => (0..picks).map(|pick| YarnId(at(0, pick))).collect(),
-    };
-    let same = (0..picks).all(|pick| {
-        (0..ends).all(|end| {
-            let thread = if along_warp { end } else { pick };
-            at(end, pick) == order[thread as usize].0
-        })
-    });
-    if same {
-        return Ok((YarnMap::Order(order), yarns));
-    }
-    let grid = Grid::from_fn(ends, picks, |end, pick| YarnId(at(end, pick)))
-        .map_err(|error| Fault::new(error.to_string(), "cut it into parts"))?;
-    Ok((YarnMap::Crossings(grid), yarns))
-}
-
-/// What a yarn map says about itself.
-fn map_line(what: ImageAs, map: &YarnMap, yarns: usize) -> String {
-    let side = if what == ImageAs::Warp {
-        "warp"
-    } else {
-        "weft"
-    };
-    let kind = match map {
-        YarnMap::Order(_) => "an order",
-        YarnMap::Crossings(_) => "by crossing, for previews only: no loom changes a yarn midway",
-    };
-    format!("read as {side} yarns: {yarns} colours, {kind}")
-}
-
-/// A design of yarns alone, in plain weave.
-fn yarns_only(
-    raster: &Raster,
-    what: ImageAs,
-    reading: ImageReading,
-    family: Family,
-    warnings: &mut Vec<String>,
-) -> Result<Parts, Fault> {
-    let (map, mut yarns) = yarn_map(raster, what, reading, family)?;
-    warnings.push(map_line(what, &map, yarns.len()) + "; the weave is plain");
-    let other = YarnMap::single(YarnId(yarns.len() as u16));
-    let (name, maps) = match what {
-        ImageAs::Warp => (
-            "weft",
-            YarnMaps {
-                warp: map,
-                weft: other,
-            },
-        ),
-        _ => (
-            "warp",
-            YarnMaps {
-                warp: other,
-                weft: map,
-            },
-        ),
-    };
-    yarns.push(Yarn::new(name, family, family.numbers().undyed));
-    let fault = |text: String| Fault::new(text, "cut it into parts");
-    let fill = Fill::by_notation("plain").map_err(|error| fault(error.to_string()))?;
-    let filled = Filled::new(fill, raster.width(), raster.height());
-    let filled = filled.map_err(|error| fault(error.to_string()))?;
-    Ok((Structure::Weave(filled), yarns, maps))
-}
-
 /// The sett that a resolution states; `None` for programs' defaults and what cannot be
 /// woven (0.5 to 500 threads per cm).
 fn stated_sett((across, down): (f32, f32)) -> Option<Sett> {
@@ -515,110 +357,6 @@ fn stated_sett((across, down): (f32, f32)) -> Option<Sett> {
 /// Whether a sett written as a resolution would be taken for a default when read back.
 pub(super) fn looks_like_default(sett: &Sett) -> bool {
     stated_sett((sett.ends.per_cm, sett.picks.per_cm)).is_none()
-}
-
-/// Yarn maps for a design, each with its file's name.
-#[derive(Debug, Clone, Default)]
-pub struct Maps {
-    /// Of the warp.
-    pub warp: Option<(Decoded, String)>,
-    /// Of the weft.
-    pub weft: Option<(Decoded, String)>,
-}
-
-/// Gives a design the yarns of one or two maps: images of its own size, one pixel a
-/// crossing. A warp map may also be one row of its ends and a weft map one column of its
-/// picks. Yarns of the direction that gets no map stay.
-///
-/// # Errors
-/// [`ImageError`] for a map of another size or with too many colours.
-pub fn with_maps(
-    imported: Imported,
-    maps: Maps,
-    options: &LoadOptions,
-) -> Result<Imported, ImageError> {
-    let Imported {
-        design,
-        mut warnings,
-    } = imported;
-    let family = options.family.unwrap_or(Family::Cotton);
-    let (ends, picks) = (design.ends(), design.picks());
-    let mut list = YarnList(Vec::new());
-    let mut place = |what, given: Option<(Decoded, String)>, own: &YarnMap| {
-        let Some((decoded, name)) = given else {
-            return Ok(list.renumbered(own, |id| design.yarn(id).clone()));
-        };
-        let raster = decoded.raster;
-        let size = (raster.width(), raster.height());
-        let strip = match what {
-            ImageAs::Warp => (ends, 1),
-            _ => (1, picks),
-        };
-        if size != (ends, picks) && size != strip {
-            let problem = format!(
-                "expected {ends} × {picks} pixels, the size of {}, found {} × {}",
-                design.name, size.0, size.1
-            );
-            return Err(Fault::new(problem, "draw the map on the same grid").named(&name));
-        }
-        warnings.extend(decoded.warnings);
-        let (map, yarns) =
-            yarn_map(&raster, what, options.image, family).map_err(|fault| fault.named(&name))?;
-        warnings.push(format!("{name}: {}", map_line(what, &map, yarns.len())));
-        Ok(list.renumbered(&map, |id| yarns[usize::from(id.0)].clone()))
-    };
-    let maps = YarnMaps {
-        warp: place(ImageAs::Warp, maps.warp, &design.maps().warp)?,
-        weft: place(ImageAs::Weft, maps.weft, &design.maps().weft)?,
-    };
-    let wrong = |error: crate::design::DesignError| {
-        Fault::new(error.to_string(), "give other maps").named(&design.name)
-    };
-    let assumed = design.sett().assumed;
-    let mut dressed = design.clone().with_yarns(list.0, maps).map_err(wrong)?;
-    if assumed {
-        let sett = usual_sett(dressed.yarns(), dressed.maps());
-        dressed = dressed.with_sett(sett).map_err(wrong)?;
-    }
-    Ok(Imported {
-        design: dressed,
-        warnings,
-    })
-}
-
-/// Yarns gathered from several maps; equal ones are one.
-struct YarnList(Vec<Yarn>);
-
-impl YarnList {
-    fn number(&mut self, yarn: Yarn) -> YarnId {
-        let at = self
-            .0
-            .iter()
-            .position(|known| *known == yarn)
-            .unwrap_or_else(|| {
-                self.0.push(yarn);
-                self.0.len() - 1
-            });
-        YarnId(at as u16)
-    }
-
-    /// A map by this list's numbers; only yarns in use are taken over.
-    fn renumbered(&mut self, map: &YarnMap, yarn: impl Fn(YarnId) -> Yarn) -> YarnMap {
-        let mut known = std::collections::BTreeMap::new();
-        let mut number = |id: YarnId| *known.entry(id).or_insert_with(|| self.number(yarn(id)));
-        match map {
-            YarnMap::Order(order) => YarnMap::Order(order.iter().map(|&id| number(id)).collect()),
-            YarnMap::Crossings(grid) => {
-                // A grid of a size that exists already.
-                match Grid::from_fn(grid.ends(), grid.picks(), |end, pick| {
-                    number(grid.get(end, pick))
-                }) {
-                    Ok(grid) => YarnMap::Crossings(grid),
-                    Err(_) => map.clone(),
-                }
-            }
-        }
-    }
 }
 
 #[cfg(test)]

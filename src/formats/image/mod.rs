@@ -10,7 +10,8 @@
 //! | `png`, `bmp`, `tiff`, `gif`, `pcx`, `photo` | one reader each |
 //! | `encode` | one writer for each format that looms take |
 //! | `reading` | what an image is and how it is read; presets by maker |
-//! | `import` | raster → design |
+//! | `import` | raster → design; `numbers` are its colours as regions or yarns |
+//! | `yarn_maps` | rasters → the yarns of a design |
 //! | `export` | design → raster, and what is lost |
 //!
 //! * **Colour, not bits.** What is black is decided by what is displayed, whatever the
@@ -28,19 +29,22 @@ mod encode;
 mod export;
 mod gif;
 mod import;
+mod numbers;
 mod pcx;
 mod photo;
 mod png;
 mod raster;
 mod reading;
 mod tiff;
+mod yarn_maps;
 
 pub use encode::{ImageFormat, encode};
 pub(in crate::formats) use export::sett_loss;
 pub use export::{Export, ImageContent, export};
-pub use import::{Maps, design, with_maps};
+pub use import::design;
 pub use raster::{Colours, MAX_COLOURS, Pixels, Raster, RasterError, luma};
 pub use reading::{Black, Convention, Corner, ImageAs, ImageReading, Key};
+pub use yarn_maps::{Maps, with_maps};
 
 use crate::design::check_size;
 

@@ -142,7 +142,7 @@ impl Fields {
         let grey = matches!(photometric as u16, WHITE_IS_ZERO | BLACK_IS_ZERO);
         let known = match photometric as u16 {
             PALETTE => samples == 1 && matches!(bits, 1 | 2 | 4 | 8),
-            RGB => samples >= 3 && samples <= 8 && matches!(bits, 8 | 16),
+            RGB => (3..=8).contains(&samples) && matches!(bits, 8 | 16),
             CMYK => samples == 4 && bits == 8,
             _ if samples == 1 => grey && matches!(bits, 1 | 2 | 4 | 8 | 16),
             _ => grey && samples <= 8 && matches!(bits, 8 | 16),
@@ -395,7 +395,7 @@ impl<'f> Canvas<'f> {
                     let Line::Eight(line) = line else {
                         return Err(short());
                     };
-                    if left % 8 != 0 {
+                    if !left.is_multiple_of(8) {
                         return Err(Fault::damaged("tiles that begin within a byte"));
                     }
                     let at = (top + row) * width.div_ceil(8) + left / 8;
