@@ -104,11 +104,16 @@ prepare_peers() {
         lacks "python3, and with it the peers"
         return 0
     fi
-    if ! "$peers/bin/python" -c 'import mitsuba, numpy' >/dev/null 2>&1; then
+    if ! "$peers/bin/python" -c 'import mitsuba, numpy, PIL, tifffile' >/dev/null 2>&1; then
         say "   installing the peers"
         python3 -m venv --clear "$peers" >"$scratch/peers.log" 2>&1 &&
             "$peers/bin/python" -m pip install --quiet --disable-pip-version-check \
-                'mitsuba==3.5.2' numpy >>"$scratch/peers.log" 2>&1 || true
+                'mitsuba==3.5.2' numpy pillow tifffile >>"$scratch/peers.log" 2>&1 || true
+    fi
+    if "$peers/bin/python" -c 'import numpy, PIL, tifffile' >/dev/null 2>&1; then
+        export PICKGLASS_PEERS_PYTHON=$peers/bin/python
+    else
+        lacks "Pillow and tifffile ($peers/bin/pip install pillow tifffile numpy)"
     fi
     if "$peers/bin/python" -c 'import mitsuba, numpy' >/dev/null 2>&1; then
         export PICKGLASS_MITSUBA_PYTHON=$peers/bin/python

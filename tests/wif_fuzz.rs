@@ -192,6 +192,6 @@ proptest! {
 
 #[test]
 fn other_files_are_named() {
-    let answer = load_bytes(b"\x89PNG\r\n\x1a\n", "x.wif", &LoadOptions::default());
+    let answer = load_bytes(b"PK\x03\x04", "x.wif", &LoadOptions::default());
     assert!(matches!(answer, Err(FormatError::Unknown { .. })));
 }

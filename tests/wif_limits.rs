@@ -4,24 +4,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+mod memory;
+
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
+use memory::{peak, reset_peak};
 use pickglass::formats::{LoadOptions, load_bytes};
-
-/// Peak resident memory since the last reset in bytes; `None` where the system cannot say.
-fn peak() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024)
-}
-
-/// Sets the peak back to what is resident now, and gives that.
-fn reset_peak() -> Option<u64> {
-    std::fs::write("/proc/self/clear_refs", "5").ok()?;
-    peak()
-}
 
 const HEAD: &str = "[WEAVING]\nShafts=4\nTreadles=4\n[WARP]\nThreads=4\n[WEFT]\nThreads=4\n";
 const DRAFT: &str = "[THREADING]\n1=1\n2=2\n[LIFTPLAN]\n1=1\n2=2\n";

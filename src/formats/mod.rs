@@ -1,14 +1,17 @@
 //! One file a format, reading and writing.
 //!
-//! [`load`] recognises a design or draft by its content, not by its name. `ron` is the
-//! design document, `wif` the weavers' interchange format, `dtx`, `wpo` and `dbw` the files
-//! of drafting programs, `jc5` those of jacquard looms; `sheet` is what drafts have in
-//! common. `atomic` writes files so that nothing is ever half-written.
+//! [`load`] recognises a design, draft, loom file or image by its content, not by its
+//! name; [`save`] writes one by the ending of its name and says what the format has no
+//! place for. `ron` is the design document, `wif` the weavers' interchange format, `dtx`,
+//! `wpo` and `dbw` the files of drafting programs, `jc5` those of jacquard looms, `image`
+//! all kinds of images; `sheet` is what drafts have in common. `atomic` writes files so that
+//! nothing is ever half-written.
 
 pub mod atomic;
 pub mod dbw;
 pub mod dtx;
 pub mod exr;
+pub mod image;
 pub mod jc5;
 pub mod png;
 pub mod presets;
@@ -20,9 +23,10 @@ pub mod wpo;
 pub use sheet::{Place, SheetError};
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::design::{Density, Design, Family, Sett};
+use image::{Black, Corner, Encoding, ImageContent, ImageFormat, ImageReading};
 
 /// A design that was read, and what the reader had to decide for itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +46,8 @@ pub struct LoadOptions {
     pub family: Option<Family>,
     /// Loom files are woven face down: what they lift shows on the back.
     pub face_down: bool,
+    /// How an image is read.
+    pub image: ImageReading,
 }
 
 /// A file that could not be opened as a design: one line with the file, the place, what
@@ -64,8 +70,8 @@ pub enum FormatError {
     },
     /// Neither a design nor a draft.
     #[error(
-        "{file}: expected a design (.ron), a draft (.wif, .dtx, .wpo, .dbw) or a loom file (.jc5), \
-         found {found}; choose another file"
+        "{file}: expected a design (.ron), a draft (.wif, .dtx, .wpo, .dbw), a loom file (.jc5) \
+         or an image, found {found}; choose another file"
     )]
     Unknown {
         /// The file.
@@ -82,6 +88,21 @@ pub enum FormatError {
     /// Another draft or a loom file with something wrong.
     #[error(transparent)]
     Sheet(#[from] SheetError),
+    /// An image with something wrong, or a design that no image can hold.
+    #[error(transparent)]
+    Image(#[from] image::ImageError),
+    /// A name with an ending that no format has.
+    #[error(
+        "{file}: designs are written as .ron, drafts as .wif, images as .png, .bmp, .tif or \
+         .gif; end the name in one of them"
+    )]
+    Ending {
+        /// The file.
+        file: String,
+    },
+    /// A file that could not be written.
+    #[error(transparent)]
+    Write(#[from] atomic::WriteError),
     /// A sett that cannot be woven.
     #[error("{file}: {problem}; give another sett")]
     Sett {
@@ -95,14 +116,6 @@ pub enum FormatError {
 /// The largest file that is opened: many times the largest design.
 pub const MAX_FILE: u64 = 1 << 28;
 
-/// Opens a design document or a draft, whichever it is.
-///
-/// # Errors
-/// [`FormatError`]: one line with the file, the place, what was expected and what to do.
-pub fn load(path: &Path, options: &LoadOptions) -> Result<Imported, FormatError> {
-    load_bytes(&read_bytes(path)?, &path.display().to_string(), options)
-}
-
 /// The bytes of a file, if they are no more than [`MAX_FILE`].
 ///
 /// # Errors
@@ -114,7 +127,8 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FormatError> {
         source,
     };
     let opened = std::fs::File::open(path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
+    let length = opened.metadata().map_or(0, |about| about.len());
+    let mut bytes = Vec::with_capacity(length.min(MAX_FILE + 1) as usize);
     // One byte more than allowed tells a file that is too large, whatever its length says.
     opened
         .take(MAX_FILE + 1)
@@ -126,6 +140,50 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FormatError> {
     Ok(bytes)
 }
 
+/// Opens a design document, a draft or an image, whichever it is.
+///
+/// # Errors
+/// [`FormatError`]: one line with the file, the place, what was expected and what to do.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Imported, FormatError> {
+    load_bytes(&read_bytes(path)?, &path.display().to_string(), options)
+}
+
+/// What bytes are, by their content.
+enum Kind {
+    /// A design document.
+    Ron,
+    /// A weavers' draft, or any other text.
+    Wif,
+    /// A draft or loom file of another program.
+    Loom(LoomReader),
+    /// An image.
+    Image,
+    /// Certainly something else.
+    Other(&'static str),
+}
+
+impl Kind {
+    fn of(bytes: &[u8]) -> Self {
+        if Encoding::of(bytes).is_some() {
+            return Self::Image;
+        }
+        if let Some((_, read)) = LOOM_FORMATS
+            .iter()
+            .find(|(recognises, _)| recognises(bytes))
+        {
+            return Self::Loom(*read);
+        }
+        if let Some(found) = other_kind(bytes) {
+            return Self::Other(found);
+        }
+        let start = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
+        match ron::version(&start) {
+            Some(_) => Self::Ron,
+            None => Self::Wif,
+        }
+    }
+}
+
 /// As [`load`], for bytes already in memory; `name` is what messages call them.
 ///
 /// # Errors
@@ -135,38 +193,160 @@ pub fn load_bytes(
     name: &str,
     options: &LoadOptions,
 ) -> Result<Imported, FormatError> {
-    if let Some(found) = other_kind(bytes) {
-        let file = name.to_owned();
-        return Err(FormatError::Unknown { file, found });
+    match Kind::of(bytes) {
+        Kind::Other(found) => Err(FormatError::Unknown {
+            file: name.to_owned(),
+            found,
+        }),
+        Kind::Image => Ok(image::design(image::read(bytes, name)?, name, options)?),
+        Kind::Loom(read) => Ok(read(bytes, name, options)?),
+        Kind::Wif => Ok(wif::read_with(bytes, name, options)?),
+        Kind::Ron => Ok(Imported {
+            design: with_options(ron::read(bytes, name)?, name, options)?,
+            warnings: Vec::new(),
+        }),
     }
-    for (recognises, read) in LOOM_FORMATS {
-        if recognises(bytes) {
-            return Ok(read(bytes, name, options)?);
+}
+
+/// Images that say which yarn lies where.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct MapFiles {
+    /// The warp yarn of every crossing.
+    pub warp: Option<PathBuf>,
+    /// The weft yarn of every crossing.
+    pub weft: Option<PathBuf>,
+}
+
+/// Gives a design the yarns of images; see [`image::with_maps`].
+///
+/// # Errors
+/// [`FormatError`] if an image cannot be read or has another size than the design.
+pub fn with_map_files(
+    design: Imported,
+    files: &MapFiles,
+    options: &LoadOptions,
+) -> Result<Imported, FormatError> {
+    if *files == MapFiles::default() {
+        return Ok(design);
+    }
+    let read = |path: &Option<PathBuf>| -> Result<_, FormatError> {
+        let Some(path) = path else { return Ok(None) };
+        let name = path.display().to_string();
+        let decoded = image::read(&read_bytes(path)?, &name)?;
+        Ok(Some((decoded, name)))
+    };
+    let maps = image::Maps {
+        warp: read(&files.warp)?,
+        weft: read(&files.weft)?,
+    };
+    Ok(image::with_maps(design, maps, options)?)
+}
+
+/// How a design is written as an image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SaveOptions {
+    /// What of the design an image shows.
+    pub content: ImageContent,
+    /// Which thread black puts on the face.
+    pub black: Black,
+    /// Where an image starts to count; `None` = where the file did that the design is from.
+    pub corner: Option<Corner>,
+}
+
+/// A design as the bytes of a file, and what of it has no place there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Saved {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// One line each.
+    pub lost: Vec<String>,
+}
+
+/// Writes a design in the format of the path's ending, whole or not at all. Returns what
+/// had no place in it, one line each.
+///
+/// # Errors
+/// [`FormatError`] for an ending of no format, a design that the format cannot hold, and
+/// a file that cannot be written.
+pub fn save(
+    design: &Design,
+    path: &Path,
+    options: &SaveOptions,
+) -> Result<Vec<String>, FormatError> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let file = || path.display().to_string();
+    let saved = save_bytes(design, &ending, options)
+        .unwrap_or_else(|| Err(FormatError::Ending { file: file() }))?;
+    atomic::write(path, &saved.bytes)?;
+    let mut lost = saved.lost;
+    if ImageFormat::of_ending(&ending).is_some() && stem(&file()) != design.name {
+        lost.push(format!(
+            "its name, \"{}\": images have that of their file",
+            design.name
+        ));
+    }
+    Ok(lost)
+}
+
+/// As [`save`], into memory; `None` if no format has this ending.
+pub fn save_bytes(
+    design: &Design,
+    ending: &str,
+    options: &SaveOptions,
+) -> Option<Result<Saved, FormatError>> {
+    let format = match ending.to_ascii_lowercase().as_str() {
+        "ron" => {
+            let written = ron::write(design).map_err(FormatError::from);
+            return Some(written.map(|text| Saved {
+                bytes: text.into_bytes(),
+                lost: Vec::new(),
+            }));
         }
-    }
-    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
-    if ron::version(&start).is_none() {
-        return Ok(wif::read_with(bytes, name, options)?);
-    }
-    let design = ron::read(bytes, name)?;
-    Ok(Imported {
-        design: with_options(design, name, options)?,
-        warnings: Vec::new(),
+        "wif" => {
+            let written = wif::write(design).map_err(FormatError::from);
+            return Some(written.map(|written| Saved {
+                bytes: written.text.into_bytes(),
+                lost: written.lost,
+            }));
+        }
+        other => ImageFormat::of_ending(other)?,
+    };
+    Some(save_image(design, format, options))
+}
+
+fn save_image(
+    design: &Design,
+    format: ImageFormat,
+    options: &SaveOptions,
+) -> Result<Saved, FormatError> {
+    let export = image::export(design, options.content, options.black, options.corner)?;
+    let mut lost = export.lost;
+    lost.extend(image::sett_loss(design, format.keeps_resolution()));
+    Ok(Saved {
+        bytes: image::encode(&export.raster, format, &design.name)?,
+        lost,
     })
 }
 
-/// Draft and loom files: how each is known, and its reader.
-type LoomFormat = (
-    fn(&[u8]) -> bool,
-    fn(&[u8], &str, &LoadOptions) -> Result<Imported, SheetError>,
-);
+/// Reads a draft or loom file.
+type LoomReader = fn(&[u8], &str, &LoadOptions) -> Result<Imported, SheetError>;
 
-const LOOM_FORMATS: [LoomFormat; 4] = [
+/// Draft and loom files: how each is known, and its reader.
+const LOOM_FORMATS: [(fn(&[u8]) -> bool, LoomReader); 4] = [
     (dtx::recognises, dtx::read),
     (wpo::recognises, wpo::read),
     (dbw::recognises, dbw::read),
     (jc5::recognises, jc5::read),
 ];
+
+/// A file's name without folders and ending.
+fn stem(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    match last.rsplit_once('.') {
+        Some((stem, _)) if !stem.is_empty() => stem.to_owned(),
+        _ => last.to_owned(),
+    }
+}
 
 /// A design at the sett somebody asked for; unequal spacings keep their ratios.
 fn with_options(design: Design, name: &str, options: &LoadOptions) -> Result<Design, FormatError> {
@@ -193,19 +373,17 @@ fn with_options(design: Design, name: &str, options: &LoadOptions) -> Result<Des
 
 /// What bytes are that are certainly no text.
 fn other_kind(bytes: &[u8]) -> Option<&'static str> {
-    let kinds: [(&[u8], &str); 8] = [
-        (b"\x89PNG", "a PNG image"),
-        (b"\xff\xd8\xff", "a JPEG image"),
-        (b"GIF8", "a GIF image"),
-        (b"BM", "a BMP image"),
-        (b"II*\0", "a TIFF image"),
-        (b"MM\0*", "a TIFF image"),
+    let kinds: [(&[u8], &str); 6] = [
         (b"PK\x03\x04", "an archive"),
+        (b"%PDF", "a PDF"),
+        (
+            b"8BPS",
+            "a Photoshop document: save it as a TIFF, PNG or BMP",
+        ),
+        (b"@@StartDTX", "a Fiberworks draft"),
         (b"{", "JSON"),
+        (b"\x7fELF", "a program"),
     ];
-    if wpo::recognises(bytes) {
-        return None;
-    }
     if bytes.is_empty() {
         return Some("an empty file");
     }
@@ -227,7 +405,8 @@ mod tests {
 
     #[test]
     fn files_are_known_by_content() {
-        assert!(message(b"\x89PNG\r\n").contains("found a PNG image"));
+        assert!(message(b"\x89PNG\r\n").contains("PNG: the image is damaged"));
+        assert!(message(b"PK\x03\x04").contains("found an archive"));
         assert!(message(b"").contains("an empty file"));
         assert!(message(b"(pickglass: 1,").contains("damaged"));
         assert!(message(b"hello").contains("expected a WIF"));

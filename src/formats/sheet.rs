@@ -6,7 +6,7 @@
 use std::fmt;
 
 use super::wif::threads::{self, Spacing, Threads};
-use super::{Imported, LoadOptions};
+use super::{Imported, LoadOptions, stem};
 use crate::design::{
     Design, Draft, Family, FirstEnd, FirstPick, ForeignSection, Lifting, Origin, Srgb, Structure,
     YarnMaps, usual_sett,
@@ -210,15 +210,6 @@ impl Sheet<'_> {
             design,
             warnings: warnings.finish(),
         })
-    }
-}
-
-/// The file's name without folders and ending.
-fn stem(name: &str) -> String {
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    match last.rsplit_once('.') {
-        Some((stem, _)) if !stem.is_empty() => stem.to_owned(),
-        _ => last.to_owned(),
     }
 }
 

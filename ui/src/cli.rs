@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use crate::values::{self, Dial, PicturePath, SettArg, Size};
+use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::still::{EffectChoice, LightChoice};
 
 /// Look closely at cloth that has not been woven yet.
@@ -21,10 +22,12 @@ pub struct Cli {
 /// What `pickglass` does when it is not given a command: opens the window.
 #[derive(Debug, Args)]
 pub struct WindowArgs {
-    /// A design (.ron), a draft or loom file, or a preset's name
+    /// A design (.ron), a draft, loom or image file, or a preset's name
     pub design: Option<String>,
     #[command(flatten)]
     pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,
@@ -37,7 +40,7 @@ pub struct WindowArgs {
 pub enum Command {
     /// Floats, warnings and scale of a design
     Check(CheckArgs),
-    /// Convert between draft and design formats
+    /// Convert between draft, design and image formats
     Convert(ConvertArgs),
     /// Assign exemplar blocks and fix their edges; no picture
     Synthesize(SynthesizeArgs),
@@ -66,13 +69,48 @@ pub struct SettArgs {
     pub sett: Option<SettArg>,
 }
 
+/// How images and loom files are read, and which images say where the yarns lie.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Images and loom files")]
+pub struct ImageArgs {
+    /// What an image is [default: as its colours suggest]
+    #[arg(long = "as", value_name = "KIND", value_parser = values::image_as())]
+    pub what: Option<ImageAs>,
+    /// Presets by maker: tc2, pointcarre and arahweave
+    #[arg(long, value_name = "MAKER", value_parser = values::convention())]
+    pub convention: Option<Convention>,
+    /// Which thread a black pixel puts on the face [default: warp]
+    #[arg(long, value_name = "THREAD", value_parser = values::black())]
+    pub black: Option<Black>,
+    /// The corner in which end 1 and pick 1 meet [default: bottom-left]
+    #[arg(long, value_name = "CORNER", value_parser = values::corner())]
+    pub origin: Option<Corner>,
+    /// Exchange left and right: Z becomes S
+    #[arg(long)]
+    pub mirror: bool,
+    /// Tell regions and yarns apart by colour or by palette index [default: rgb]
+    #[arg(long, value_name = "KEY", value_parser = values::key())]
+    pub key: Option<Key>,
+    /// An image with the warp yarn of every crossing
+    #[arg(long, value_name = "IMAGE")]
+    pub warp_map: Option<PathBuf>,
+    /// An image with the weft yarn of every crossing
+    #[arg(long, value_name = "IMAGE")]
+    pub weft_map: Option<PathBuf>,
+    /// Loom files read or written are of cloth woven face down
+    #[arg(long)]
+    pub face_down: bool,
+}
+
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// A design (.ron), a draft or loom file, or a preset's name
+    /// A design (.ron), a draft, loom or image file, or a preset's name
     #[arg(value_name = "FILE")]
     pub design: String,
     #[command(flatten)]
     pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,
@@ -80,16 +118,28 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// A design (.ron), a draft or loom file, or a preset's name
+    /// A design (.ron), a draft, loom or image file, or a preset's name
     #[arg(value_name = "IN")]
     pub input: String,
-    /// The file to write; its ending chooses the format (.ron, .wif or .jc5)
+    /// The file to write; its ending chooses the format (.ron, .wif, .jc5, .png, .bmp, .tif
+    /// or .gif)
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
+    /// What an image that is written shows [default: as --as says, else the weave]
+    #[arg(long, value_name = "KIND", value_parser = values::content())]
+    pub write: Option<ImageContent>,
+    /// Which thread black stands for in what is written [default: as --black says]
+    #[arg(long, value_name = "THREAD", value_parser = values::black())]
+    pub out_black: Option<Black>,
+    /// Where what is written starts to count [default: as --origin says]
+    #[arg(long, value_name = "CORNER", value_parser = values::corner())]
+    pub out_origin: Option<Corner>,
     #[command(flatten)]
     pub sett: SettArgs,
     #[command(flatten)]
     pub loom: LoomArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,
@@ -104,9 +154,6 @@ pub struct LoomArgs {
     /// Write for the hooks of a loom: a name, or a .ron file as in presets/looms
     #[arg(long, value_name = "PRESET")]
     pub loom: Option<String>,
-    /// Loom files read or written are of cloth woven face down
-    #[arg(long)]
-    pub face_down: bool,
 }
 
 /// How blocks are assigned to crossings.
@@ -122,7 +169,7 @@ pub enum MethodArg {
 
 #[derive(Debug, Args)]
 pub struct SynthesizeArgs {
-    /// A design (.ron), a draft or loom file, or a preset's name
+    /// A design (.ron), a draft, loom or image file, or a preset's name
     pub design: String,
     /// How blocks are assigned to crossings
     #[arg(long, value_enum, default_value_t = MethodArg::Dp)]
@@ -135,6 +182,8 @@ pub struct SynthesizeArgs {
     pub seed: u64,
     #[command(flatten)]
     pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,
@@ -156,7 +205,7 @@ pub enum RendererArg {
 #[derive(Debug, Args)]
 #[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
 pub struct StillArgs {
-    /// A design (.ron), a draft or loom file, or a preset's name
+    /// A design (.ron), a draft, loom or image file, or a preset's name
     pub design: String,
     /// The picture to write, .png or .exr
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
@@ -205,6 +254,8 @@ pub struct StillArgs {
     pub dials: Vec<Dial>,
     #[command(flatten)]
     pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,

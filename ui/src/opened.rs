@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pickglass::design::{Design, Positions, Sett, Srgb, WeavePattern};
-use pickglass::formats::{self, Imported, LoadOptions, presets};
+use pickglass::formats::image::{ImageAs, ImageContent, ImageReading};
+use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, presets};
 
-use crate::cli::SettArgs;
+use crate::cli::{ConvertArgs, ImageArgs, SettArgs};
 
 /// The preset that is shown when nothing is asked for.
 pub const DEFAULT_PRESET: &str = "default";
@@ -26,33 +27,39 @@ pub struct Opened {
 }
 
 impl Opened {
-    /// Opens a design argument. A preset's name wins; `./twill` is a file all the same.
-    pub fn argument(argument: &str, sett: &SettArgs) -> anyhow::Result<Self> {
-        Self::argument_with(argument, sett, LoadOptions::default())
-    }
-
-    /// As [`Self::argument`], with what else is known of the file.
-    pub fn argument_with(
-        argument: &str,
-        sett: &SettArgs,
-        options: LoadOptions,
-    ) -> anyhow::Result<Self> {
-        let sett = sett
-            .sett
-            .map(|sett| (sett.ends_per_cm as f32, sett.picks_per_cm as f32));
-        match presets::design(argument) {
+    /// Opens a design argument, with the yarns of images where they are given. A preset's
+    /// name wins; `./twill` is a file all the same.
+    pub fn argument(argument: &str, sett: &SettArgs, image: &ImageArgs) -> anyhow::Result<Self> {
+        let options = LoadOptions {
+            sett: sett
+                .sett
+                .map(|sett| (sett.ends_per_cm as f32, sett.picks_per_cm as f32)),
+            image: reading(image),
+            face_down: image.face_down,
+            ..LoadOptions::default()
+        };
+        let imported = match presets::design(argument) {
             Some(design) => {
                 let mut design = design?;
-                if let Some((ends, picks)) = sett {
+                if let Some((ends, picks)) = options.sett {
                     design = design.with_sett(Sett::per_cm(ends, picks))?;
                 }
-                Ok(Self::new(design, Vec::new()))
+                Imported {
+                    design,
+                    warnings: Vec::new(),
+                }
             }
             None if !argument.contains(['.', '/', '\\']) && !Path::new(argument).exists() => {
-                Err(no_such_preset(argument))
+                return Err(no_such_preset(argument));
             }
-            None => Self::load(Path::new(argument), &LoadOptions { sett, ..options }),
-        }
+            None => formats::load(Path::new(argument), &options)?,
+        };
+        let files = MapFiles {
+            warp: image.warp_map.clone(),
+            weft: image.weft_map.clone(),
+        };
+        let Imported { design, warnings } = formats::with_map_files(imported, &files, &options)?;
+        Ok(Self::new(design, warnings))
     }
 
     /// Opens a preset by name.
@@ -65,11 +72,7 @@ impl Opened {
 
     /// Opens a file.
     pub fn file(path: PathBuf) -> anyhow::Result<Self> {
-        Self::load(&path, &LoadOptions::default())
-    }
-
-    fn load(path: &Path, options: &LoadOptions) -> anyhow::Result<Self> {
-        let Imported { design, warnings } = formats::load(path, options)?;
+        let Imported { design, warnings } = formats::load(&path, &LoadOptions::default())?;
         Ok(Self::new(design, warnings))
     }
 
@@ -163,10 +166,40 @@ impl Opened {
     }
 }
 
+/// How the flags say that images are read: a maker's habits, then what is said apart.
+fn reading(flags: &ImageArgs) -> ImageReading {
+    let habits = flags
+        .convention
+        .map_or_else(ImageReading::default, |maker| maker.reading());
+    ImageReading {
+        what: flags.what.or(habits.what),
+        black: flags.black.unwrap_or(habits.black),
+        corner: flags.origin.unwrap_or(habits.corner),
+        mirror: flags.mirror,
+        key: flags.key.unwrap_or(habits.key),
+    }
+}
+
+/// How the flags of a conversion say that images are written: as they are read, unless
+/// something is said apart.
+pub fn writing(args: &ConvertArgs) -> SaveOptions {
+    let read = reading(&args.image);
+    SaveOptions {
+        content: args.write.unwrap_or(match args.image.what {
+            Some(ImageAs::Artwork) => ImageContent::Artwork,
+            Some(ImageAs::Warp) => ImageContent::Warp,
+            Some(ImageAs::Weft) => ImageContent::Weft,
+            Some(ImageAs::Weave | ImageAs::Picture) | None => ImageContent::Weave,
+        }),
+        black: args.out_black.unwrap_or(read.black),
+        corner: args.out_origin.or(args.image.origin),
+    }
+}
+
 fn no_such_preset(name: &str) -> anyhow::Error {
     let known: Vec<_> = presets::names().collect();
     anyhow::anyhow!(
-        "{name}: no file and no preset is called this: give a design, draft or loom file, or one of {}",
+        "{name}: no file and no preset is called this: give a design, draft, loom or image file, or one of {}",
         known.join(", ")
     )
 }

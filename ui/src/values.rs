@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
+use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::still::{EffectBase, EffectChoice, LightChoice};
 
 /// Threads per cm, along both directions.
@@ -139,6 +140,63 @@ pub fn backing() -> impl TypedValueParser<Value = Backing> {
         "self" => Backing::Itself,
         _ => Backing::None,
     })
+}
+
+/// One of a few names, each standing for a value.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    names: [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(names.map(|(name, _)| name)).map(move |found| {
+        let known = names.iter().find(|(name, _)| *name == found);
+        // The parser before has let only these names through.
+        known.unwrap_or(&names[0]).1
+    })
+}
+
+/// What an image is.
+pub fn image_as() -> impl TypedValueParser<Value = ImageAs> {
+    one_of([
+        ("weave", ImageAs::Weave),
+        ("artwork", ImageAs::Artwork),
+        ("warp", ImageAs::Warp),
+        ("weft", ImageAs::Weft),
+        ("picture", ImageAs::Picture),
+    ])
+}
+
+/// What an image shows.
+pub fn content() -> impl TypedValueParser<Value = ImageContent> {
+    one_of([
+        ("weave", ImageContent::Weave),
+        ("artwork", ImageContent::Artwork),
+        ("warp", ImageContent::Warp),
+        ("weft", ImageContent::Weft),
+    ])
+}
+
+/// Which thread black stands for.
+pub fn black() -> impl TypedValueParser<Value = Black> {
+    one_of([("warp", Black::Warp), ("weft", Black::Weft)])
+}
+
+/// A corner of an image.
+pub fn corner() -> impl TypedValueParser<Value = Corner> {
+    one_of([
+        ("bottom-left", Corner::BottomLeft),
+        ("bottom-right", Corner::BottomRight),
+        ("top-left", Corner::TopLeft),
+        ("top-right", Corner::TopRight),
+    ])
+}
+
+/// What tells colours apart.
+pub fn key() -> impl TypedValueParser<Value = Key> {
+    one_of([("rgb", Key::Rgb), ("index", Key::Index)])
+}
+
+/// A maker's habits.
+pub fn convention() -> impl TypedValueParser<Value = Convention> {
+    one_of(Convention::ALL.map(|convention| (convention.name(), convention)))
 }
 
 /// `dial=value`.

@@ -15,7 +15,7 @@ const SNAG_MM: f32 = 5.0;
 const SHOWN_SHAFTS: usize = 24;
 
 pub fn run(args: &CheckArgs) -> anyhow::Result<()> {
-    let opened = Opened::argument(&args.design, &args.sett)?;
+    let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     let report = check(&opened.design);
     let mut warnings = opened.warnings.clone();
     warnings.extend(remarks(&opened, &report));

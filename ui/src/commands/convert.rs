@@ -1,26 +1,22 @@
-//! `pickglass convert`: between draft, loom and design formats.
+//! `pickglass convert`: between draft, loom, image and design formats.
 
 use std::path::Path;
 
 use pickglass::design::Design;
 use pickglass::formats::jc5::{self, LoomPreset, WriteOptions};
-use pickglass::formats::{LoadOptions, atomic, read_bytes, ron, wif};
+use pickglass::formats::{self, atomic, read_bytes};
 use serde_json::json;
 
 use super::{check_output, note_warnings};
-use crate::cli::{ConvertArgs, LoomArgs};
-use crate::opened::Opened;
+use crate::cli::ConvertArgs;
+use crate::opened::{self, Opened};
 use crate::out;
 
 pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
     check_output(&args.output)?;
-    let options = LoadOptions {
-        face_down: args.loom.face_down,
-        ..LoadOptions::default()
-    };
-    let opened = Opened::argument_with(&args.input, &args.sett, options)?;
+    let opened = Opened::argument(&args.input, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
-    let lost = write(&opened.design, &args.output, &args.loom)?;
+    let lost = write(&opened.design, args)?;
     let written = args.output.display().to_string();
     if args.json {
         return out::say_json(&json!({ "written": written, "lost": lost }));
@@ -33,7 +29,8 @@ pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
 }
 
 /// Writes a design in the format of the path's ending; returns what had no place in it.
-fn write(design: &Design, path: &Path, loom: &LoomArgs) -> anyhow::Result<Vec<String>> {
+fn write(design: &Design, args: &ConvertArgs) -> anyhow::Result<Vec<String>> {
+    let (path, loom) = (&args.output, &args.loom);
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -43,30 +40,19 @@ fn write(design: &Design, path: &Path, loom: &LoomArgs) -> anyhow::Result<Vec<St
             path.display()
         );
     }
-    let (bytes, lost) = match ending.as_deref() {
-        Some("ron") => (ron::write(design)?.into_bytes(), Vec::new()),
-        Some("wif") => {
-            let written = wif::write(design)?;
-            (written.text.into_bytes(), written.lost)
-        }
-        Some("jc5") => {
-            let written = loom_file(design, path, loom)?;
-            (written.bytes, written.lost)
-        }
-        _ => anyhow::bail!(
-            "{}: designs are written as .ron, drafts as .wif and loom files as .jc5: end the name in \
-             one of them",
-            path.display()
-        ),
-    };
-    atomic::write(path, &bytes)?;
-    Ok(lost)
+    if ending.as_deref() == Some("jc5") {
+        let written = loom_file(design, path, args)?;
+        atomic::write(path, &written.bytes)?;
+        return Ok(written.lost);
+    }
+    Ok(formats::save(design, path, &opened::writing(args))?)
 }
 
 /// A card file: always into the hooks of a loom that is stated.
-fn loom_file(design: &Design, path: &Path, loom: &LoomArgs) -> anyhow::Result<jc5::Written> {
+fn loom_file(design: &Design, path: &Path, args: &ConvertArgs) -> anyhow::Result<jc5::Written> {
+    let loom = &args.loom;
     let mut options = WriteOptions {
-        face_down: loom.face_down,
+        face_down: args.image.face_down,
     };
     if let Some(like) = &loom.like {
         let template = read_bytes(like)?;

@@ -21,7 +21,7 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     refuse_absent_renderers(args.renderer)?;
     let path = &args.output.0;
     check_output(path)?;
-    let opened = Opened::argument(&args.design, &args.sett)?;
+    let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
         return sheet(args, &opened, path);

@@ -17,7 +17,7 @@ use crate::opened::Opened;
 use crate::out::{self, Progress};
 
 pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
-    let opened = Opened::argument(&args.design, &args.sett)?;
+    let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let progress = Progress::new();
     let report = measure(&opened, settings(args), &progress.job());

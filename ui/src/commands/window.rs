@@ -18,7 +18,7 @@ const FALLBACK_SECONDS: f64 = 20.0;
 
 pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
     let argument = args.design.as_deref().unwrap_or(DEFAULT_PRESET);
-    let opened = Opened::argument(argument, &args.sett)?;
+    let opened = Opened::argument(argument, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let name = opened.name().to_owned();
     match window::run(opened.clone(), args.smoke_frames) {

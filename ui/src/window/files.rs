@@ -12,6 +12,11 @@ use crate::tokens::{self, Palette};
 /// A dialog that ends sooner than this without a choice never opened, s.
 const NEVER_OPENED: f64 = 1.5;
 
+/// Endings that the dialog shows; files are known by their content.
+const OPENED: [&str; 11] = [
+    "ron", "wif", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg", "jpeg", "webp",
+];
+
 /// What opening came to.
 pub enum Opening {
     Opened(Box<Opened>),
@@ -42,8 +47,8 @@ impl Files {
         }
         let task = Task::start(ctx, "dialog", || {
             rfd::FileDialog::new()
-                .set_title("Open a design or a draft")
-                .add_filter("Designs and drafts", &["ron", "wif"])
+                .set_title("Open a design, a draft or an image")
+                .add_filter("Designs, drafts and images", &OPENED)
                 .add_filter("All files", &["*"])
                 .pick_file()
         });
@@ -133,7 +138,7 @@ impl Files {
             let quiet = Palette::current(ui).quiet;
             ui.label(RichText::new("Open by path").text_style(egui::TextStyle::Heading));
             ui.label(RichText::new(typed.reason).color(quiet));
-            let label = ui.label("Path of a .ron or .wif file");
+            let label = ui.label("Path of a .ron, .wif or image file");
             let field = ui
                 .add(egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY))
                 .labelled_by(label.id);
