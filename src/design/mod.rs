@@ -10,10 +10,13 @@
 //! | `weaves` | weaves by notation ("2/2 twill", "1/7 satin move 3") |
 //! | `draft` | threading, tie-up and treadling, and the weave they make |
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
+//! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
 //! | `document` | the design that holds all of these together |
 //! | `floats` | what a designer checks first |
+//! | `colour` | how different two colours look |
 
+mod colour;
 mod document;
 mod draft;
 mod floats;
@@ -22,10 +25,12 @@ mod lattice;
 mod maps;
 mod pattern;
 mod sett;
+mod source;
 mod structure;
 mod weaves;
 mod yarn;
 
+pub use colour::{Lab, delta_e_00, lab};
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };
@@ -37,7 +42,10 @@ pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
-pub use structure::{Corrections, Fill, Filled, Region, Regions, Structure, StructureError};
+pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
+pub use structure::{
+    Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
+};
 pub use weaves::{MAX_REPEAT, NotationError, satin, satin_moves, weave};
 pub use yarn::{
     ColourError, Family, FamilyError, FamilyNumbers, Srgb, USUAL_SURFACE_SHARE, Yarn, YarnId,

@@ -1,11 +1,12 @@
 //! One file a format, reading and writing.
 //!
 //! [`load`] recognises a design or draft by its content, not by its name. `ron` is the
-//! design document, `wif` the weavers' interchange format; `atomic` writes files so that
-//! nothing is ever half-written.
+//! design document, `wif` the weavers' interchange format, `photo` any picture that is to be
+//! posterised; `atomic` writes files so that nothing is ever half-written.
 
 pub mod atomic;
 pub mod exr;
+pub mod photo;
 pub mod png;
 pub mod presets;
 pub mod ron;
