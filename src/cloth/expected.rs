@@ -52,7 +52,11 @@ const WOOL: Fitted = Fitted {
     mixing: [0.915, 4.331],
     share: [0.064, 0.106, 0.726],
 };
-const LINEN: Fitted = COTTON;
+const LINEN: Fitted = Fitted {
+    own: [-0.0217, 1.2255, -0.2176],
+    mixing: [0.613, 3.330],
+    share: [0.117, 0.077, 0.214],
+};
 
 /// How a weave shows its two yarns.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -23,16 +23,18 @@ use std::sync::Arc;
 
 pub use bind::{Bound, bind_floats};
 pub use follow::follow;
-pub use resample::{MAX_PANEL, panel};
+pub use resample::{Layout, MAX_PANEL, panel};
 pub use series::{DARKEST, LIGHTEST, shadow_weave};
 pub use settings::{Fit, MAX_COLOURS, PosteriseSettings};
 
-use crate::cloth::expected::{expected_colour, yarn_colour};
+use crate::cloth::expected::expected_colour;
 use crate::design::{
-    Design, DesignError, Grid, Region, RegionYarns, Regions, SizeError, SourceImage, Srgb,
-    Structure, StructureError, Yarn, YarnId, YarnMaps, delta_e_00, lab,
+    Corrections, Design, DesignError, Fill, Grid, Region, RegionYarns, Regions, SizeError,
+    SourceImage, Srgb, Structure, StructureError, Yarn, YarnId, delta_e_00, lab,
 };
 use crate::job::{Cancelled, Job};
+use propose::Yarns;
+use quantise::{Reduced, quantise};
 
 /// Why a picture could not become a design.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -115,97 +117,41 @@ pub fn posterise(
     job: &Job,
 ) -> Result<Posterised, PosteriseError> {
     let layout = settings.layout(source.width(), source.height())?;
-    let (ends, picks) = (layout.ends, layout.picks);
-    job.report("resampling", 0.0);
-    let pixels = panel(source, &layout, job)?;
-    job.report("reducing colours", 0.3);
-    let mut reduced = quantise::quantise(&pixels, ends, settings.colours, settings.dither, job)?;
-    job.report("merging specks", 0.7);
-    specks::merge(&mut reduced.indices, ends as usize, settings.speck, job)?;
-    reduced.drop_unused();
+    let reduced = reduce(source, settings, &layout, job)?;
     job.report("proposing weaves", 0.85);
-
     let known = previous.and_then(|design| match design.structure() {
         Structure::Regions(regions) => Some(regions),
         _ => None,
     });
-    let asked: Vec<Srgb> = reduced.palette.clone();
     let coverage = reduced.coverage();
-    let kept = known.map_or_else(
-        || vec![None; asked.len()],
-        |regions| follow(&asked, regions.palette()),
-    );
-    let pair = match previous {
-        Some(design) => propose::pair_of(design),
-        None => propose::pair(&asked, &coverage, settings),
+    let mut yarns = match previous {
+        Some(design) => Yarns::kept(design),
+        None => Yarns::proposed(&reduced.palette, &coverage, settings),
     };
-    let mut yarns = vec![pair.warp.clone(), pair.weft.clone()];
-    let weaves = propose::weaves(&asked, &coverage, &kept, &pair);
-    let mut palette = Vec::with_capacity(asked.len());
-    for ((&colour, weave), kept) in asked.iter().zip(weaves).zip(&kept) {
-        let before = kept.and_then(|at| known?.palette().get(at));
-        let mut region = match before {
-            Some(before) => Region {
-                yarns: None,
-                ..before.clone()
-            },
-            None => Region::new(colour.to_string(), weave),
-        };
-        region.colour = Some(colour);
-        if settings.preview_only {
-            // Both yarns in the colour itself: any weave of them shows it.
-            let id = YarnId(yarns.len() as u16);
-            let name = region.name.clone();
-            yarns.push(Yarn {
-                name: format!("{name} weft"),
-                colour,
-                ..pair.weft.clone()
-            });
-            yarns.push(Yarn {
-                name: format!("{name} warp"),
-                colour,
-                ..pair.warp.clone()
-            });
-            let (warp, weft) = (YarnId(id.0 + 1), id);
-            region.yarns = Some(RegionYarns { warp, weft });
-        }
-        palette.push(region);
-    }
+    let palette = palette(&reduced.palette, &coverage, settings, known, &mut yarns)?;
     job.check()?;
 
     // The picture's first row is the cloth's last pick.
+    let (ends, picks) = (layout.ends, layout.picks);
     let at = |end: u32, pick: u32| (picks - 1 - pick) as usize * ends as usize + end as usize;
     let map = Grid::from_fn(ends, picks, |end, pick| {
         u16::from(reduced.indices[at(end, pick)])
     })?;
-    let corrections = known
-        .and_then(Regions::corrections)
-        .filter(|found| (found.mask().ends(), found.mask().picks()) == (ends, picks))
-        .cloned();
     let mut warnings = Vec::new();
-    if corrections.is_none() && known.is_some_and(|regions| regions.corrections().is_some()) {
-        warnings.push("the hand corrections were drawn on another size and are left out".into());
-    }
+    let corrections = kept_corrections(known, (ends, picks), &mut warnings);
     let mut regions =
         Regions::new(map, palette, corrections)?.with_source(Some(Arc::clone(source)));
     if let Some(longest) = settings.bind {
         job.report("binding floats", 0.9);
-        let bound = bind_floats(&regions, longest, job)?;
-        if bound.left > 0 {
-            warnings.push(format!(
-                "{} floats over {longest} crossings between regions could not be bound: choose \
-                 weaves with shorter floats",
-                bound.left
-            ));
-        }
-        regions = regions.with_corrections(bound.corrections)?;
+        regions = bound(regions, longest, &mut warnings, job)?;
     }
     warnings.extend(uneven(&regions));
 
-    let maps = regions.yarn_maps(&YarnMaps::plain(YarnId(0), YarnId(1)))?;
+    let maps = regions.yarn_maps(&yarns.maps)?;
     let colours = expected(&regions, &coverage, &yarns);
     let structure = Structure::Regions(regions);
-    let mut design = Design::new(settings.name.clone(), structure, yarns, maps, layout.sett)?;
+    let name = settings.name.clone();
+    let mut design = Design::new(name, structure, yarns.all, maps, layout.sett)?;
     if let Some(previous) = previous {
         design.name.clone_from(&previous.name);
         design.notes.clone_from(&previous.notes);
@@ -218,16 +164,126 @@ pub fn posterise(
     })
 }
 
+/// The picture at the panel's size in a few colours, without specks.
+fn reduce(
+    source: &SourceImage,
+    settings: &PosteriseSettings,
+    layout: &Layout,
+    job: &Job,
+) -> Result<Reduced, PosteriseError> {
+    job.report("resampling", 0.0);
+    let pixels = panel(source, layout, job)?;
+    job.report("reducing colours", 0.3);
+    let (ends, colours) = (layout.ends, settings.colours);
+    let mut reduced = quantise(&pixels, ends, colours, settings.dither, job)?;
+    job.report("merging specks", 0.7);
+    specks::merge(&mut reduced.indices, ends as usize, settings.speck, job)?;
+    reduced.drop_unused();
+    Ok(reduced)
+}
+
+/// A region for every colour: kept, or with a proposed weave.
+fn palette(
+    asked: &[Srgb],
+    coverage: &[f64],
+    settings: &PosteriseSettings,
+    known: Option<&Regions>,
+    yarns: &mut Yarns,
+) -> Result<Vec<Region>, DesignError> {
+    let kept = known.map_or_else(
+        || vec![None; asked.len()],
+        |regions| follow(asked, regions.palette()),
+    );
+    let weaves = propose::weaves(asked, coverage, &kept, &yarns.pair);
+    let mut palette = Vec::with_capacity(asked.len());
+    for ((&colour, weave), kept) in asked.iter().zip(weaves).zip(&kept) {
+        let before = kept.and_then(|at| known?.palette().get(at));
+        let mut region = region(colour, weave, before);
+        if settings.preview_only {
+            region.yarns = Some(own_yarns(&region.name, colour, yarns)?);
+        }
+        palette.push(region);
+    }
+    Ok(palette)
+}
+
+/// The hand corrections of a previous design of the same size.
+fn kept_corrections(
+    known: Option<&Regions>,
+    size: (u32, u32),
+    warnings: &mut Vec<String>,
+) -> Option<Corrections> {
+    let found = known?.corrections()?;
+    if (found.mask().ends(), found.mask().picks()) == size {
+        return Some(found.clone());
+    }
+    warnings.push("the hand corrections were drawn on another size and are left out".to_owned());
+    None
+}
+
+/// Regions whose floats across each other are bound.
+fn bound(
+    regions: Regions,
+    longest: u32,
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<Regions, PosteriseError> {
+    let bound = bind_floats(&regions, longest, job)?;
+    if bound.left > 0 {
+        warnings.push(format!(
+            "{} floats over {longest} crossings between regions could not be bound: choose \
+             weaves with shorter floats",
+            bound.left
+        ));
+    }
+    Ok(regions.with_corrections(bound.corrections)?)
+}
+
+/// The region of a colour: the one it takes over from, or a new one with `weave`.
+fn region(colour: Srgb, weave: Fill, before: Option<&Region>) -> Region {
+    let mut region = match before {
+        Some(before) => before.clone(),
+        None => Region::new(colour.to_string(), weave),
+    };
+    // A name that only says the colour goes with it.
+    if region
+        .colour
+        .is_some_and(|old| region.name == old.to_string())
+    {
+        region.name = colour.to_string();
+    }
+    region.colour = Some(colour);
+    region.yarns = None;
+    region
+}
+
+/// Adds two yarns in a region's colour: any weave of them shows it.
+fn own_yarns(name: &str, colour: Srgb, yarns: &mut Yarns) -> Result<RegionYarns, DesignError> {
+    let next = yarns.all.len();
+    let id = |at: usize| u16::try_from(at).map(YarnId);
+    let (Ok(warp), Ok(weft)) = (id(next), id(next + 1)) else {
+        return Err(DesignError::TooManyYarns(next + 2));
+    };
+    for (what, like) in [("warp", &yarns.pair.warp), ("weft", &yarns.pair.weft)] {
+        yarns.all.push(Yarn {
+            name: format!("{name} {what}"),
+            colour,
+            ..like.clone()
+        });
+    }
+    Ok(RegionYarns { warp, weft })
+}
+
 /// What every region is expected to show.
-fn expected(regions: &Regions, coverage: &[f64], yarns: &[Yarn]) -> Vec<RegionColour> {
-    let yarn = |id: YarnId| &yarns[usize::from(id.0)];
+fn expected(regions: &Regions, coverage: &[f64], yarns: &Yarns) -> Vec<RegionColour> {
+    let yarn = |id: YarnId| &yarns.all[usize::from(id.0)];
     (regions.palette().iter().zip(coverage))
         .map(|(region, &coverage)| {
-            let own = region.yarns.unwrap_or(RegionYarns {
-                warp: YarnId(0),
-                weft: YarnId(1),
-            });
-            let shown = expected_colour(region.fill.pattern(), yarn(own.warp), yarn(own.weft));
+            let (warp, weft) = match region.yarns {
+                Some(own) => (yarn(own.warp), yarn(own.weft)),
+                None => (&yarns.pair.warp, &yarns.pair.weft),
+            };
+            let shown = expected_colour(region.fill.pattern(), warp, weft);
             let asked = region.colour.unwrap_or(Srgb(0, 0, 0));
             RegionColour {
                 asked,
@@ -270,9 +326,4 @@ fn uneven(regions: &Regions) -> Vec<String> {
         ));
     }
     warnings
-}
-
-/// The lightest and darkest a pair of yarns can show, for a designer who chooses them.
-pub fn reach(warp: &Yarn, weft: &Yarn) -> [Srgb; 2] {
-    [warp, weft].map(|yarn| Srgb::from_linear(yarn_colour(yarn)))
 }

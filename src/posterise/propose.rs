@@ -4,7 +4,9 @@
 use super::series::{DARKEST, LIGHTEST, shadow_weave};
 use super::settings::PosteriseSettings;
 use crate::cloth::expected::expected_colour;
-use crate::design::{Design, Fill, Sett, Srgb, WeavePattern, Yarn, YarnId, delta_e_00, lab};
+use crate::design::{
+    Design, Fill, Sett, Srgb, WeavePattern, Yarn, YarnId, YarnMaps, delta_e_00, lab,
+};
 
 /// Diameter over pitch of the yarns: dense cloth, as jacquards are, that hides what lies
 /// behind it.
@@ -26,23 +28,47 @@ pub(super) struct Pair {
     pub weft: Yarn,
 }
 
-/// The yarns of a design that is posterised anew.
-pub(super) fn pair_of(design: &Design) -> Pair {
-    let palette = |id: u16| design.yarn(YarnId(id)).clone();
-    match (design.maps().warp.order(), design.maps().weft.order()) {
-        (Some(warp), Some(weft)) => Pair {
-            warp: design
-                .yarn(warp.first().copied().unwrap_or(YarnId(0)))
-                .clone(),
-            weft: design
-                .yarn(weft.first().copied().unwrap_or(YarnId(0)))
-                .clone(),
-        },
-        // Preview only: the first two are the usual ones, the regions' own follow.
-        _ => Pair {
-            warp: palette(0),
-            weft: palette(1),
-        },
+/// The yarns of a cloth and where they lie, before regions get their own.
+pub(super) struct Yarns {
+    pub all: Vec<Yarn>,
+    pub maps: YarnMaps,
+    /// What weaves are proposed for: the first of the warp order and of the weft order.
+    pub pair: Pair,
+}
+
+impl Yarns {
+    fn of_pair(pair: Pair) -> Self {
+        Self {
+            all: vec![pair.warp.clone(), pair.weft.clone()],
+            maps: YarnMaps::plain(YarnId(0), YarnId(1)),
+            pair,
+        }
+    }
+
+    /// Those of a design that is posterised anew. Of a design for previews only the first
+    /// two: the regions' own follow them.
+    pub fn kept(design: &Design) -> Self {
+        let yarn = |id| design.yarn(id).clone();
+        let (warp, weft) = (design.maps().warp.order(), design.maps().weft.order());
+        match (warp.and_then(<[_]>::first), weft.and_then(<[_]>::first)) {
+            (Some(&warp), Some(&weft)) => Self {
+                all: design.yarns().to_vec(),
+                maps: design.maps().clone(),
+                pair: Pair {
+                    warp: yarn(warp),
+                    weft: yarn(weft),
+                },
+            },
+            _ => Self::of_pair(Pair {
+                warp: yarn(YarnId(0)),
+                weft: yarn(YarnId(1)),
+            }),
+        }
+    }
+
+    /// Those proposed for a picture.
+    pub fn proposed(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Self {
+        Self::of_pair(pair(asked, coverage, settings))
     }
 }
 
@@ -82,7 +108,7 @@ fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], own: Srgb) -> Vec<Srgb> {
 
 /// The dark and the light yarn whose mixtures are nearest to the picture's colours, by
 /// ΔE₀₀ weighted with coverage; the warp is the dark one.
-pub(super) fn pair(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Pair {
+fn pair(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Pair {
     if let Some(colours) = settings.yarns {
         return pair_in(settings, colours);
     }

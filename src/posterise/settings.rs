@@ -68,7 +68,8 @@ impl Default for PosteriseSettings {
             speck: 6,
             preview_only: false,
             bind: None,
-            family: Family::Cotton,
+            // Filaments cover: nothing behind the cloth shows through.
+            family: Family::Silk,
             yarns: None,
         }
     }

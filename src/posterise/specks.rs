@@ -3,6 +3,8 @@
 //! A patch (crossings of one colour joined by their sides) below a size takes the colour of
 //! the neighbour with which it shares the longest border.
 
+use std::collections::VecDeque;
+
 use super::PosteriseError;
 use crate::job::Job;
 
@@ -29,10 +31,8 @@ pub(super) fn merge(
             if seen[start] {
                 continue;
             }
-            spread(indices, width, start, &mut seen, &mut patch);
-            if patch.len() < smallest as usize
-                && let Some(colour) = longest_border(indices, width, &patch)
-            {
+            let small = spread(indices, width, start, smallest, &mut seen, &mut patch);
+            if small && let Some(colour) = longest_border(indices, width, &patch) {
                 patch.iter().for_each(|&at| indices[at] = colour);
                 merged = true;
             }
@@ -53,21 +53,34 @@ fn beside(at: usize, width: usize, all: usize) -> impl Iterator<Item = usize> {
     [above, left, right, below].into_iter().flatten()
 }
 
-/// Fills `patch` with the places of one colour that join `start`.
-fn spread(indices: &[u8], width: usize, start: usize, seen: &mut [bool], patch: &mut Vec<usize>) {
+/// Marks the patch that `start` belongs to; if it is of fewer than `smallest` places they
+/// are in `patch` and the answer is true.
+fn spread(
+    indices: &[u8],
+    width: usize,
+    start: usize,
+    smallest: u32,
+    seen: &mut [bool],
+    patch: &mut Vec<usize>,
+) -> bool {
     patch.clear();
-    patch.push(start);
     seen[start] = true;
-    let mut next = 0;
-    while let Some(&at) = patch.get(next) {
-        next += 1;
+    // Only the rim waits here, however large the patch is.
+    let mut rim = VecDeque::from([start]);
+    let mut size = 0u64;
+    while let Some(at) = rim.pop_front() {
+        size += 1;
+        if size < u64::from(smallest) {
+            patch.push(at);
+        }
         for other in beside(at, width, indices.len()) {
             if !seen[other] && indices[other] == indices[start] {
                 seen[other] = true;
-                patch.push(other);
+                rim.push_back(other);
             }
         }
     }
+    size < u64::from(smallest)
 }
 
 /// The colour that a patch shares the longest border with; the first of equals.

@@ -121,9 +121,9 @@ pub struct PosterizeArgs {
     /// Dither between the colours
     #[arg(long)]
     pub dither: bool,
-    /// Merge patches of fewer crossings into their neighbours; 0 keeps all
-    #[arg(long, value_name = "N", default_value_t = 6)]
-    pub speck: u32,
+    /// Merge patches of fewer crossings into their neighbours [default: 6, or 0 if dithered]
+    #[arg(long, value_name = "N")]
+    pub speck: Option<u32>,
     /// Bind floats between regions that are longer than this, in crossings
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     pub bind: Option<u32>,
@@ -131,7 +131,7 @@ pub struct PosterizeArgs {
     #[arg(long)]
     pub preview_only: bool,
     /// What the yarns are made of
-    #[arg(long, value_name = "FAMILY", default_value = "cotton")]
+    #[arg(long, value_name = "FAMILY", default_value = "silk")]
     pub family: Family,
     /// Colour of the warp, as #rrggbb [default: chosen from the picture]
     #[arg(long, value_name = "COLOUR", requires = "weft")]

@@ -58,6 +58,7 @@ fn settings(args: &PosterizeArgs) -> PosteriseSettings {
         || "posterised".to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     );
+    let usual = PosteriseSettings::default();
     PosteriseSettings {
         name,
         colours: args.colours,
@@ -71,7 +72,10 @@ fn settings(args: &PosterizeArgs) -> PosteriseSettings {
             FitArg::Stretch => Fit::Stretch,
         },
         dither: args.dither,
-        speck: args.speck,
+        // Dithering is made of specks.
+        speck: args
+            .speck
+            .unwrap_or(if args.dither { 0 } else { usual.speck }),
         preview_only: args.preview_only,
         bind: args.bind,
         family: args.family,
