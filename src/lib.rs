@@ -4,7 +4,7 @@
 //! written by [`formats`]; [`yarn`] and [`exemplar`] turn yarn recipes into voxels to
 //! copy from; [`synthesis`] decides which exemplar block every crossing copies;
 //! [`cloth`] is the implicit volume that results; [`render`] traces it, or any other
-//! [`render::Medium`], into a film.
+//! [`render::Medium`], into a film. [`posterise`] makes a design of a photograph.
 
 pub mod cloth;
 pub mod design;
@@ -12,6 +12,7 @@ pub mod exemplar;
 pub mod formats;
 pub mod hash;
 pub mod job;
+pub mod posterise;
 pub mod render;
 pub mod still;
 pub mod synthesis;

@@ -1,22 +1,19 @@
 //! The colour a designer asks for is the colour the woven cloth shows: twelve dyes in
 //! plain weave of every family, lit at 45° from all round, seen at 0°, on an opaque pile.
 //!
-//! The pictures are made by the same tracer, settings and exemplars as any still; the
-//! judging (CIELAB, ΔE₀₀) is written apart from the library.
+//! The pictures are made by the same tracer, settings and exemplars as any still; CIELAB
+//! and ΔE₀₀, which judge them, have published tables of their own as oracles.
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
-
-mod colour_science;
 
 use std::f32::consts::{FRAC_1_SQRT_2, PI, TAU};
 use std::fmt::Write;
 use std::sync::{Arc, LazyLock};
 
-use colour_science::{delta_e_00, lab};
 use glam::{UVec3, Vec3};
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses, colour};
 use pickglass::design::{
-    Design, Family, Filled, Srgb, Structure, Yarn, YarnId, YarnMaps, usual_sett,
+    Design, Family, Filled, Srgb, Structure, Yarn, YarnId, YarnMaps, delta_e_00, lab, usual_sett,
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;

@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+use std::sync::Arc;
+
 use pickglass::design::{
     Corrections, Density, Design, Family, Fill, FirstEnd, ForeignSection, Grid, Lattice, Region,
-    Regions, Repeat, Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps,
+    RegionYarns, Regions, Repeat, Sett, SourceImage, Srgb, Structure, WeavePattern, Yarn, YarnId,
+    YarnMap, YarnMaps,
 };
 use pickglass::formats::{LoadOptions, atomic, load, presets, ron};
 
@@ -13,12 +16,11 @@ fn everything() -> Design {
     let map = Grid::from_fn(70, 33, |end, pick| ((end / 9 + pick / 7) % 3) as u16).unwrap();
     let drawn = WeavePattern::parse("##.\n.##\n#.#").unwrap();
     let region = |name: &str, fill, origin| Region {
-        name: name.to_owned(),
         colour: Some(Srgb(200, 30, 4)),
-        fill,
         origin,
+        ..Region::new(name, fill)
     };
-    let palette = vec![
+    let mut palette = vec![
         region(
             "ground \"one\"",
             Fill::by_notation("1/7 satin").unwrap(),
@@ -27,10 +29,18 @@ fn everything() -> Design {
         region("drawn", Fill::drawn(drawn), (-5, 9)),
         region("blüte", Fill::by_notation("s 3/1 twill").unwrap(), (2, -3)),
     ];
+    palette[1].locked = true;
+    palette[2].yarns = Some(RegionYarns {
+        warp: YarnId(0),
+        weft: YarnId(2),
+    });
     let mut mask = WeavePattern::new(70, 33);
     mask.set(69, 32, true);
     let corrections = Corrections::new(mask.clone(), mask).unwrap();
     let regions = Regions::new(map, palette, Some(corrections)).unwrap();
+    let picture: Vec<_> = (0..35u8).map(|k| [k, 255 - k, 7 * k]).collect();
+    let source = SourceImage::new(5, 7, picture).unwrap();
+    let regions = regions.with_source(Some(Arc::new(source)));
     let yarns = vec![
         Yarn::new("a", Family::Wool, Srgb(1, 2, 3)),
         Yarn {
@@ -146,7 +156,33 @@ fn numbers_that_cannot_be_are_refused_with_their_name() {
     assert!(refusal("#ff0080", "pink").contains("#rrggbb"));
     assert!(refusal("\"linen\"", "\"hemp\"").contains("cotton, silk, wool or linen"));
     assert!(refusal("s 3/1 twill", "s 3/1 twist").contains("no weave known"));
+    assert!(refusal("yarns: Some((0, 2))", "yarns: Some((0, 3))").contains("yarn 3"));
     assert!(refusal("along: Once", "along: Dropped(3)").contains("both directions"));
+}
+
+#[test]
+fn the_source_picture_is_bounded_and_documents_without_one_are_read() {
+    let text = ron::write(&everything()).unwrap();
+    let start = text.find("source: Some(\"").unwrap();
+    let end = start + text[start..].find("\"),").unwrap() + 3;
+    let without = format!("{}{}", &text[..start], &text[end..]);
+    let read = ron::read(without.as_bytes(), "x").unwrap();
+    assert!(read != everything());
+    let Structure::Regions(regions) = read.structure() else {
+        panic!("regions stay regions")
+    };
+    assert!(regions.source().is_none());
+    let older = without
+        .replace("locked: true,", "")
+        .replace("yarns: Some((0, 2)),", "");
+    assert!(older.len() < without.len() - 20);
+    assert!(ron::read(older.as_bytes(), "x").is_ok());
+    // A weave's PNG is no picture.
+    let weave = text.split("mask: \"").nth(1).unwrap();
+    let weave = weave.split('"').next().unwrap();
+    let picture = &text[start + "source: Some(\"".len()..end - 3];
+    assert!(refusal(picture, weave).contains("source"));
+    assert!(refusal(picture, "aGVsbG8=").contains("source"));
 }
 
 #[test]

@@ -21,12 +21,7 @@ fn timed<T>(what: &str, work: impl FnOnce() -> T) -> T {
 
 #[test]
 fn a_jacquard_of_thirty_million_crossings() {
-    let region = |notation| Region {
-        name: String::new(),
-        colour: None,
-        fill: Fill::by_notation(notation).unwrap(),
-        origin: (0, 0),
-    };
+    let region = |notation| Region::new("", Fill::by_notation(notation).unwrap());
     let palette = vec![
         region("1/7 satin"),
         region("7/1 satin"),

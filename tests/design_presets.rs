@@ -52,12 +52,9 @@ fn two(warp: Yarn, weft: Yarn) -> (Vec<Yarn>, YarnMaps) {
 
 fn regions(size: (u32, u32), fills: &[(&str, &str)], map: impl Fn(u32, u32) -> u16) -> Structure {
     let map = Grid::from_fn(size.0, size.1, map).unwrap();
-    let palette = fills.iter().map(|&(name, notation)| Region {
-        name: name.to_owned(),
-        colour: None,
-        fill: Fill::by_notation(notation).unwrap(),
-        origin: (0, 0),
-    });
+    let palette = fills
+        .iter()
+        .map(|&(name, notation)| Region::new(name, Fill::by_notation(notation).unwrap()));
     Structure::Regions(Regions::new(map, palette.collect(), None).unwrap())
 }
 

@@ -173,6 +173,8 @@ fn artwork() -> Design {
         u16::from(end * pick % 7 > 2) + u16::from(end > 17)
     });
     let region = |name: &str, colour, notation| Region {
+        locked: false,
+        yarns: None,
         name: name.into(),
         colour: Some(colour),
         fill: Fill::by_notation(notation).unwrap(),

@@ -10,6 +10,7 @@
 
 mod build;
 pub mod colour;
+pub mod expected;
 mod hair_cells;
 mod hairs;
 mod lookup;

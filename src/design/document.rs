@@ -146,6 +146,7 @@ impl Design {
         check_yarns(&yarns)?;
         check_map("warp", &maps.warp, yarns.len(), ends, picks)?;
         check_map("weft", &maps.weft, yarns.len(), ends, picks)?;
+        check_regions(&structure, yarns.len())?;
         if let Some(fault) = sett.fault() {
             return Err(DesignError::Number(fault));
         }
@@ -193,6 +194,7 @@ impl Design {
         let yarns = self.yarns.len();
         check_map("warp", &self.maps.warp, yarns, ends, picks)?;
         check_map("weft", &self.maps.weft, yarns, ends, picks)?;
+        check_regions(&structure, yarns)?;
         self.structure = structure;
         Ok(self)
     }
@@ -208,6 +210,7 @@ impl Design {
         check_map("warp", &maps.warp, yarns.len(), ends, picks)?;
         check_map("weft", &maps.weft, yarns.len(), ends, picks)?;
         colourways::check(&self.colourways, yarns.len())?;
+        check_regions(&self.structure, yarns.len())?;
         (self.yarns, self.maps) = (yarns, maps);
         Ok(self)
     }
@@ -356,6 +359,26 @@ fn check_yarns(yarns: &[Yarn]) -> Result<(), DesignError> {
         Some(fault) => Err(DesignError::Number(fault)),
         None => Ok(()),
     }
+}
+
+/// Refuses regions whose own yarns are not there.
+fn check_regions(structure: &Structure, yarns: usize) -> Result<(), DesignError> {
+    let Structure::Regions(regions) = structure else {
+        return Ok(());
+    };
+    for own in regions.palette().iter().filter_map(|region| region.yarns) {
+        for (direction, YarnId(yarn)) in [("region's warp", own.warp), ("region's weft", own.weft)]
+        {
+            if usize::from(yarn) >= yarns {
+                return Err(DesignError::MissingYarn {
+                    direction,
+                    yarn,
+                    yarns,
+                });
+            }
+        }
+    }
+    Ok(())
 }
 
 fn check_map(

@@ -12,13 +12,16 @@
 //! | `draft` | threading, tie-up and treadling, and the weave they make |
 //! | `derive` | from a weave back to a draft |
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
+//! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
 //! | `document` | the design that holds all of these together |
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
 //! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
+//! | `colour` | how different two colours look |
 
 pub mod checks;
+mod colour;
 mod colourways;
 mod derive;
 mod document;
@@ -30,10 +33,12 @@ pub mod library;
 mod maps;
 mod pattern;
 mod sett;
+mod source;
 mod structure;
 mod weaves;
 mod yarn;
 
+pub use colour::{Lab, delta_e_00, lab};
 pub use colourways::{Colourway, ColourwayError, MAX_COLOURWAYS};
 pub use derive::{DeriveError, Loom, derive, shafts_needed};
 pub use document::{
@@ -48,7 +53,10 @@ pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
-pub use structure::{Corrections, Fill, Filled, Region, Regions, Structure, StructureError};
+pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
+pub use structure::{
+    Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
+};
 pub use weaves::{
     BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
     double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,

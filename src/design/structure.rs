@@ -1,10 +1,14 @@
 //! What a weave is made of: a pattern, a draft, a notation, or regions of weaves.
 
+use std::sync::Arc;
+
 use super::draft::Draft;
 use super::grid::Grid;
+use super::maps::{YarnMap, YarnMaps};
 use super::pattern::{SizeError, WeavePattern, check_size};
+use super::source::SourceImage;
 use super::weaves::{NotationError, weave};
-use super::yarn::Srgb;
+use super::yarn::{Srgb, YarnId};
 
 /// A small weave to fill with: its notation if it has one, and its repeat.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,6 +59,33 @@ pub struct Region {
     pub fill: Fill,
     /// The crossing (end, pick) where the weave's own (0, 0) lies.
     pub origin: (i32, i32),
+    /// Whether the designer fixed the weave: proposals leave it alone.
+    pub locked: bool,
+    /// Yarns of its own, which no loom can do ("preview only"); `None` = the design's.
+    pub yarns: Option<RegionYarns>,
+}
+
+impl Region {
+    /// A region with a weave that starts at crossing (0, 0), in the design's yarns.
+    pub fn new(name: impl Into<String>, fill: Fill) -> Self {
+        Self {
+            name: name.into(),
+            colour: None,
+            fill,
+            origin: (0, 0),
+            locked: false,
+            yarns: None,
+        }
+    }
+}
+
+/// The yarns of a region whose warp and weft change along their length (Zhao 2012 §5.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RegionYarns {
+    /// Of its ends.
+    pub warp: YarnId,
+    /// Of its picks.
+    pub weft: YarnId,
 }
 
 /// Crossings set by hand, over whatever the regions weave.
@@ -96,6 +127,7 @@ pub struct Regions {
     map: Grid<u16>,
     palette: Vec<Region>,
     corrections: Option<Corrections>,
+    source: Option<Arc<SourceImage>>,
 }
 
 impl Regions {
@@ -124,7 +156,30 @@ impl Regions {
             map,
             palette,
             corrections,
+            source: None,
         })
+    }
+
+    /// The same artwork with the picture it was made of.
+    pub fn with_source(mut self, source: Option<Arc<SourceImage>>) -> Self {
+        self.source = source;
+        self
+    }
+
+    /// The same artwork with other hand corrections.
+    ///
+    /// # Errors
+    /// [`StructureError::Corrections`] if they have another size.
+    pub fn with_corrections(
+        self,
+        corrections: Option<Corrections>,
+    ) -> Result<Self, StructureError> {
+        Ok(Self::new(self.map, self.palette, corrections)?.with_source(self.source))
+    }
+
+    /// The picture the artwork was made of, if it was.
+    pub fn source(&self) -> Option<&Arc<SourceImage>> {
+        self.source.as_ref()
     }
 
     /// The region of every crossing.
@@ -152,6 +207,42 @@ impl Regions {
             }
             None => false,
         }
+    }
+
+    /// Fixes a region's weave, or frees it. False if there is no such region.
+    pub fn set_locked(&mut self, region: u16, locked: bool) -> bool {
+        match self.palette.get_mut(usize::from(region)) {
+            Some(entry) => {
+                entry.locked = locked;
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Which yarn lies where: `usual`, and over it the yarns of the regions that have
+    /// their own. Without any of those it is `usual` itself, so a loom can weave it.
+    ///
+    /// # Errors
+    /// [`SizeError`], which no artwork that exists should cause.
+    pub fn yarn_maps(&self, usual: &YarnMaps) -> Result<YarnMaps, SizeError> {
+        if self.palette.iter().all(|region| region.yarns.is_none()) {
+            return Ok(usual.clone());
+        }
+        let (ends, picks) = (self.map.ends(), self.map.picks());
+        let own = |end, pick| self.palette[usize::from(self.map.get(end, pick))].yarns;
+        let warp = Grid::from_fn(ends, picks, |end, pick| match own(end, pick) {
+            Some(yarns) => yarns.warp,
+            None => usual.warp(i64::from(end), i64::from(pick)),
+        })?;
+        let weft = Grid::from_fn(ends, picks, |end, pick| match own(end, pick) {
+            Some(yarns) => yarns.weft,
+            None => usual.weft(i64::from(end), i64::from(pick)),
+        })?;
+        Ok(YarnMaps {
+            warp: YarnMap::Crossings(warp),
+            weft: YarnMap::Crossings(weft),
+        })
     }
 
     /// The drawdown.
@@ -322,12 +413,7 @@ mod tests {
 
     fn artwork() -> Regions {
         let map = Grid::from_fn(8, 4, |end, _| u16::from(end >= 4)).unwrap();
-        let region = |name: &str, notation| Region {
-            name: name.into(),
-            colour: None,
-            fill: Fill::by_notation(notation).unwrap(),
-            origin: (0, 0),
-        };
+        let region = |name: &str, notation| Region::new(name, Fill::by_notation(notation).unwrap());
         let palette = vec![region("ground", "plain"), region("figure", "2/2 twill")];
         let mut mask = WeavePattern::new(8, 4);
         mask.set(0, 0, true);
@@ -344,6 +430,19 @@ mod tests {
         assert!(!regions.weave().get(0, 0), "the correction stands");
         assert!(regions.weave().get(1, 0), "the new weave shows");
         assert!(!regions.set_fill(7, Fill::by_notation("plain").unwrap()));
+    }
+
+    #[test]
+    fn yarns_of_a_region_lie_there_and_nowhere_else() {
+        let mut regions = artwork();
+        let usual = YarnMaps::plain(YarnId(0), YarnId(1));
+        assert_eq!(regions.yarn_maps(&usual).unwrap(), usual);
+        let (warp, weft) = (YarnId(2), YarnId(3));
+        regions.palette[1].yarns = Some(RegionYarns { warp, weft });
+        let maps = regions.yarn_maps(&usual).unwrap();
+        assert!(!maps.weavable());
+        assert_eq!((maps.warp(3, 1), maps.weft(3, 1)), (YarnId(0), YarnId(1)));
+        assert_eq!((maps.warp(4, 1), maps.weft(4, 1)), (warp, weft));
     }
 
     #[test]

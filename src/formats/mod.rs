@@ -4,7 +4,7 @@
 //! name; [`save`] writes one by the ending of its name and says what the format has no
 //! place for. `ron` is the design document, `wif` the weavers' interchange format, `dtx`,
 //! `wpo` and `dbw` the files of drafting programs, `jc5` those of jacquard looms, `image`
-//! all kinds of images; `sheet` is what drafts have in common. `atomic` writes files so that
+//! all kinds of images, `photo` any picture that is to be posterised; `sheet` is what drafts have in common. `atomic` writes files so that
 //! nothing is ever half-written.
 
 pub mod atomic;
@@ -13,6 +13,7 @@ pub mod dtx;
 pub mod exr;
 pub mod image;
 pub mod jc5;
+pub mod photo;
 pub mod png;
 pub mod presets;
 pub mod ron;

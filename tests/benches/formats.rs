@@ -58,6 +58,8 @@ fn main() {
     });
     let map = Grid::from_fn(ENDS, PICKS, |end, pick| medallion(end, pick, 12) as u16);
     let palette = (0..12u8).map(|k| Region {
+        locked: false,
+        yarns: None,
         name: format!("{k}"),
         colour: Some(Srgb(20 * k, 255 - 20 * k, 100)),
         fill: Fill::by_notation("1/7 satin").expect("a satin"),

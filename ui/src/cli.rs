@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pickglass::design::{Family, Srgb};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use crate::values::{self, Dial, PicturePath, SettArg, Size};
@@ -42,6 +43,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Convert between draft, design and image formats
     Convert(ConvertArgs),
+    /// Reduce a picture to a few colours and weave each of them
+    Posterize(Box<PosterizeArgs>),
     /// Assign exemplar blocks and fix their edges; no picture
     Synthesize(SynthesizeArgs),
     /// Render a picture of the cloth
@@ -154,6 +157,71 @@ pub struct LoomArgs {
     /// Write for the hooks of a loom: a name, or a .ron file as in presets/looms
     #[arg(long, value_name = "PRESET")]
     pub loom: Option<String>,
+}
+
+/// How a picture is brought to the panel's shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum FitArg {
+    /// Fill the panel and cut off what stands over
+    Crop,
+    /// The whole picture, with white around it
+    Pad,
+    /// Stretch the picture
+    Stretch,
+}
+
+#[derive(Debug, Args)]
+pub struct PosterizeArgs {
+    /// A picture: PNG, JPEG, BMP, TIFF or WebP
+    pub image: PathBuf,
+    /// The design to write (.ron)
+    #[arg(short, long, value_name = "DESIGN")]
+    pub output: PathBuf,
+    /// Colours to reduce to
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(2..=256))]
+    pub colours: u16,
+    /// Ends of the panel [default: from the picks and the picture, or 960]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub ends: Option<u32>,
+    /// Picks of the panel [default: from the ends and the picture]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub picks: Option<u32>,
+    /// Ends per inch
+    #[arg(long, value_name = "N", default_value_t = 60.0, value_parser = values::per_inch)]
+    pub epi: f64,
+    /// Picks per inch [default: as the ends]
+    #[arg(long, value_name = "N", value_parser = values::per_inch)]
+    pub ppi: Option<f64>,
+    /// How the picture is brought to the panel's shape
+    #[arg(long, value_enum, default_value_t = FitArg::Crop)]
+    pub fit: FitArg,
+    /// Dither between the colours
+    #[arg(long)]
+    pub dither: bool,
+    /// Merge patches of fewer crossings into their neighbours [default: 6, or 0 if dithered]
+    #[arg(long, value_name = "N")]
+    pub speck: Option<u32>,
+    /// Bind floats between regions that are longer than this, in crossings
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
+    pub bind: Option<u32>,
+    /// Give every region yarns of its own colour, which no loom can do
+    #[arg(long)]
+    pub preview_only: bool,
+    /// What the yarns are made of
+    #[arg(long, value_name = "FAMILY", default_value = "silk")]
+    pub family: Family,
+    /// Colour of the warp, as #rrggbb [default: chosen from the picture]
+    #[arg(long, value_name = "COLOUR", requires = "weft")]
+    pub warp: Option<Srgb>,
+    /// Colour of the weft, as #rrggbb
+    #[arg(long, value_name = "COLOUR", requires = "warp")]
+    pub weft: Option<Srgb>,
+    /// A design posterised before, whose yarns, weaves and corrections stay
+    #[arg(long, value_name = "DESIGN")]
+    pub keep: Option<PathBuf>,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// How blocks are assigned to crossings.
@@ -283,6 +351,36 @@ mod tests {
         assert_eq!((still.size.width, still.size.height), (64, 32));
         assert_eq!(still.sett.sett.map(|s| s.picks_per_cm), Some(20.0));
         assert_eq!(still.dials.len(), 1);
+    }
+
+    #[test]
+    fn posterizing_takes_every_flag_and_refuses_what_cannot_be() {
+        let parse = |line: &str| Cli::try_parse_from(line.split_whitespace());
+        let line = "pickglass posterize a.png -o a.ron --colours 6 --ends 960 --picks 1600 \
+                    --epi 60 --ppi 100 --fit pad --dither --speck 4 --bind 9 --preview-only \
+                    --family silk --warp #102030 --weft #f0e0d0 --keep b.ron --json";
+        let cli = parse(line).expect("a right command line");
+        let Some(Command::Posterize(args)) = cli.command else {
+            panic!("not posterize")
+        };
+        assert_eq!(
+            (args.colours, args.ends, args.ppi),
+            (6, Some(960), Some(100.0))
+        );
+        assert_eq!(args.warp, Some(Srgb(0x10, 0x20, 0x30)));
+        for wrong in [
+            "--colours 1",
+            "--colours 257",
+            "--ends 0",
+            "--epi nan",
+            "--epi 0",
+            "--fit bend",
+            "--warp #102030",
+            "--family hemp",
+        ] {
+            let line = format!("pickglass posterize a.png -o a.ron {wrong}");
+            assert_eq!(parse(&line).expect_err(wrong).exit_code(), 2);
+        }
     }
 
     #[test]

@@ -52,6 +52,14 @@ pub fn sett(text: &str) -> Result<SettArg, String> {
     })
 }
 
+/// Threads per inch.
+pub fn per_inch(text: &str) -> Result<f64, String> {
+    finite(text)
+        .ok()
+        .filter(|n| (1.5..=1200.0).contains(n))
+        .ok_or_else(|| "expected threads per inch, 1.5 to 1200".to_owned())
+}
+
 /// `WxH` in pixels.
 pub fn size(text: &str) -> Result<Size, String> {
     let wrong = || format!("expected WIDTHxHEIGHT in pixels, each 1 to {LARGEST_SIDE}");

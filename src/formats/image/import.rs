@@ -292,6 +292,8 @@ fn artwork(
         let fill = Fill::by_notation(&notation)
             .map_err(|error| Fault::new(error.to_string(), "report this, please"))?;
         regions.push(Region {
+            locked: false,
+            yarns: None,
             name: colour.to_string(),
             colour: Some(colour),
             fill,

@@ -3,7 +3,7 @@
 //! A weave is a 1-bit greyscale image with black = warp up; maps of regions and yarns are
 //! indexed (or 16-bit, above 256 values). The bottom row of the image is pick 0. Size and
 //! kind of an image are checked against the document before its pixels are decoded, row by
-//! row, into shared tiles.
+//! row, into shared tiles. The picture a design was made of is 8-bit RGB of its own size.
 
 use std::io::Cursor;
 
@@ -11,7 +11,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use png::{BitDepth, ColorType, Decoder, Encoder, Limits, Reader, Transformations};
 
-use crate::design::{Grid, WeavePattern};
+use crate::design::{Grid, MAX_SOURCE_PIXELS, SourceImage, WeavePattern};
 
 /// A PNG whose header has been read and found right.
 type Open = Reader<Cursor<Vec<u8>>>;
@@ -23,12 +23,29 @@ fn open(
     picks: u32,
     kinds: &[(ColorType, BitDepth)],
 ) -> Result<Open, String> {
+    open_of(text, ends, kinds, |width, height| {
+        if (width, height) == (ends, picks) {
+            return Ok(());
+        }
+        Err(format!(
+            "the image has {width} × {height} pixels, but {ends} × {picks} are declared"
+        ))
+    })
+}
+
+/// Opens an image of one of these kinds whose size `check` accepts, at most `widest` wide.
+fn open_of(
+    text: &str,
+    widest: u32,
+    kinds: &[(ColorType, BitDepth)],
+    check: impl FnOnce(u32, u32) -> Result<(), String>,
+) -> Result<Open, String> {
     let bytes = STANDARD
         .decode(text.trim())
         .map_err(|error| format!("the image is no base64 ({error})"))?;
     // A row and the inflater's window are all that is held; text chunks are skipped.
     let limits = Limits {
-        bytes: (1 << 20) + 16 * ends as usize,
+        bytes: (1 << 20) + 16 * widest as usize,
     };
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_ignore_text_chunk(true);
@@ -36,14 +53,9 @@ fn open(
     decoder.set_transformations(Transformations::IDENTITY);
     let unreadable = |error: png::DecodingError| format!("the image is no PNG ({error})");
     let header = decoder.read_header_info().map_err(unreadable)?;
-    let (width, height) = (header.width, header.height);
-    if (width, height) != (ends, picks) {
-        return Err(format!(
-            "the image has {width} × {height} pixels, but {ends} × {picks} are declared"
-        ));
-    }
+    check(header.width, header.height)?;
     if header.interlaced || !kinds.contains(&(header.color_type, header.bit_depth)) {
-        return Err("the image is of another kind of PNG than this grid needs".to_owned());
+        return Err("the image is of another kind of PNG than belongs here".to_owned());
     }
     decoder.read_info().map_err(unreadable)
 }
@@ -138,6 +150,31 @@ pub(super) fn write_map(grid: &Grid<u16>) -> Result<String, String> {
             encoder.set_depth(BitDepth::Eight);
             encoder.set_palette(palette(grid.max().unwrap_or(0)));
         }
+    })
+}
+
+/// Reads the picture a design was made of.
+pub(super) fn read_picture(text: &str) -> Result<SourceImage, String> {
+    let checked =
+        |width, height| SourceImage::check_size(width, height).map_err(|error| error.to_string());
+    let widest = MAX_SOURCE_PIXELS as u32;
+    let mut reader = open_of(text, widest, &[(ColorType::Rgb, BitDepth::Eight)], checked)?;
+    let (width, height) = (reader.info().width, reader.info().height);
+    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    each_row(&mut reader, height, |_, line| {
+        pixels.extend(line.chunks_exact(3).map(|rgb| [rgb[0], rgb[1], rgb[2]]));
+    })?;
+    SourceImage::new(width, height, pixels).map_err(|error| error.to_string())
+}
+
+/// Writes the picture a design was made of.
+pub(super) fn write_picture(picture: &SourceImage) -> Result<String, String> {
+    let bytes = picture.pixels().as_flattened();
+    encode(picture.width(), picture.height(), bytes, |encoder| {
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_filter(png::Filter::Adaptive);
+        encoder.set_compression(png::Compression::Balanced);
     })
 }
 

@@ -5,17 +5,18 @@
 
 use std::fmt;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::Fault;
-use super::image::{read_map, read_pattern, write_map, write_pattern};
+use super::image::{read_map, read_pattern, read_picture, write_map, write_pattern, write_picture};
 use crate::design::{
     Colourway, Corrections, Density, Design, Draft, Family, Fill, Filled, FirstEnd, FirstPick,
-    ForeignSection, Grid, Lattice, Lifting, MAX_COLOURWAYS, MAX_CROSSINGS, Origin, Region, Regions,
-    Repeat, Sett, Shed, Srgb, StatedThreads, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMap,
-    YarnMaps, check_size,
+    ForeignSection, Grid, Lattice, Lifting, MAX_COLOURWAYS, MAX_CROSSINGS, Origin, Region,
+    RegionYarns, Regions, Repeat, Sett, Shed, Srgb, StatedThreads, Structure, Ties, WeavePattern,
+    Yarn, YarnId, YarnMap, YarnMaps, check_size,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -92,6 +93,9 @@ struct RegionsV1 {
     palette: Limited<RegionV1, MAX_REGIONS>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     corrections: Option<CorrectionsV1>,
+    /// The picture it was made of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    source: Option<Image>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -102,6 +106,11 @@ struct RegionV1 {
     fill: FillV1,
     #[serde(default)]
     origin: (i32, i32),
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    locked: bool,
+    /// Warp and weft yarn, from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    yarns: Option<(u16, u16)>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -332,6 +341,11 @@ fn structure(found: StructureV1, ends: u32, picks: u32) -> Result<Structure, Fau
                     },
                     fill: fill("region", region.fill)?,
                     origin: region.origin,
+                    locked: region.locked,
+                    yarns: region.yarns.map(|(warp, weft)| RegionYarns {
+                        warp: YarnId(warp),
+                        weft: YarnId(weft),
+                    }),
                 });
             }
             let corrections = match found.corrections {
@@ -343,8 +357,16 @@ fn structure(found: StructureV1, ends: u32, picks: u32) -> Result<Structure, Fau
                     Some(both.map_err(|error| Fault::new("corrections", error))?)
                 }
             };
+            let source = match found.source {
+                None => None,
+                Some(image) => {
+                    let read = read_picture(&image);
+                    Some(Arc::new(read.map_err(|fault| Fault::new("source", fault))?))
+                }
+            };
             let regions = Regions::new(map, palette, corrections);
-            Structure::Regions(regions.map_err(|error| Fault::new("regions", error))?)
+            let regions = regions.map_err(|error| Fault::new("regions", error))?;
+            Structure::Regions(regions.with_source(source))
         }
     })
 }
@@ -562,6 +584,8 @@ fn of_structure(structure: &Structure) -> Result<StructureV1, String> {
                         colour: region.colour.as_ref().map(Srgb::to_string),
                         fill: of_fill(&region.fill)?,
                         origin: region.origin,
+                        locked: region.locked,
+                        yarns: region.yarns.map(|yarns| (yarns.warp.0, yarns.weft.0)),
                     })
                 })
                 .collect::<Result<_, String>>()
@@ -572,6 +596,10 @@ fn of_structure(structure: &Structure) -> Result<StructureV1, String> {
                     mask: write_pattern(found.mask())?,
                     value: write_pattern(found.value())?,
                 }),
+            },
+            source: match regions.source() {
+                None => None,
+                Some(source) => Some(write_picture(source)?),
             },
         }),
     })

@@ -3,6 +3,7 @@
 
 mod check;
 mod convert;
+mod posterize;
 mod still;
 mod synthesize;
 mod weaves;
@@ -21,6 +22,7 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
         None => window::run(&cli.window),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Posterize(args)) => posterize::run(&args),
         Some(Command::Synthesize(args)) => synthesize::run(&args),
         Some(Command::Still(args)) => still::run(&args),
         Some(Command::Weaves(args)) => weaves::run(&args),

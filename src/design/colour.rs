@@ -1,5 +1,6 @@
-//! CIELAB (D65) and CIEDE2000, for judging pictures: written from the standards, apart
-//! from the library.
+//! CIELAB (D65) and CIEDE2000: how different two colours look.
+//!
+//! Written from the standards; the table of Sharma, Wu & Dalal (2005) is the oracle.
 
 use glam::Vec3;
 
