@@ -64,6 +64,8 @@ fn artwork() -> Design {
         COLOURS.iter().position(|entry| entry.0 == letter).unwrap() as u16
     });
     let palette = COLOURS.iter().map(|&(letter, colour)| Region {
+        locked: false,
+        yarns: None,
         name: letter.into(),
         colour: Some(colour),
         fill: Fill::by_notation("plain").unwrap(),
