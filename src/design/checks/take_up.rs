@@ -94,11 +94,12 @@ pub fn take_up(design: &Design, weave: &WeavePattern, whose: Interlacing) -> Tak
         }
     };
     let crossed = mean_diameter(design, crossing);
+    let usual = mean_diameter(design, own);
     let (pitch, crossings) = (f64::from(pitch), f64::from(along.ends()));
     let mut jammed = 0;
     let threads: Vec<f64> = (0..along.picks())
         .map(|thread| {
-            let own = diameter(design, own, thread, whose);
+            let own = diameter(design, own, thread, whose).unwrap_or(usual);
             let both = own + crossed;
             let passes = f64::from(interlacings(along, thread, ends != Repeat::None));
             let room = crossings * pitch - (crossings - passes) * crossed;
@@ -144,9 +145,9 @@ fn mean_diameter(design: &Design, map: &YarnMap) -> f64 {
     }
 }
 
-/// Diameter in mm of one thread; the mean over its length where its yarn changes, and over
-/// the order where that does not repeat with the weave.
-fn diameter(design: &Design, map: &YarnMap, thread: u32, whose: Interlacing) -> f64 {
+/// Diameter in mm of one thread, the mean over its length where its yarn changes; `None`
+/// where the order does not repeat with the weave, so that it is of every yarn by turns.
+fn diameter(design: &Design, map: &YarnMap, thread: u32, whose: Interlacing) -> Option<f64> {
     let of = |id: YarnId| f64::from(design.yarn(id).diameter());
     match map {
         YarnMap::Order(order) => {
@@ -155,10 +156,8 @@ fn diameter(design: &Design, map: &YarnMap, thread: u32, whose: Interlacing) -> 
                 Interlacing::Weft => design.picks(),
             } as usize;
             // Thread i of the weave meets the yarns i, i + threads, … of the order.
-            if threads.is_multiple_of(order.len()) {
-                return of(order[thread as usize % order.len()]);
-            }
-            mean_diameter(design, map)
+            let recurs = threads.is_multiple_of(order.len());
+            recurs.then(|| of(order[thread as usize % order.len()]))
         }
         YarnMap::Crossings(grid) => {
             let (sum, count) = match whose {
@@ -171,7 +170,7 @@ fn diameter(design: &Design, map: &YarnMap, thread: u32, whose: Interlacing) -> 
                     (along.sum::<f64>(), grid.ends())
                 }
             };
-            sum / f64::from(count)
+            Some(sum / f64::from(count))
         }
     }
 }
