@@ -43,7 +43,10 @@ impl Files {
         let task = Task::start(ctx, "dialog", || {
             rfd::FileDialog::new()
                 .set_title("Open a design or a draft")
-                .add_filter("Designs and drafts", &["ron", "wif"])
+                .add_filter(
+                    "Designs and drafts",
+                    &["ron", "wif", "dtx", "wpo", "dbw", "jc5"],
+                )
                 .add_filter("All files", &["*"])
                 .pick_file()
         });
