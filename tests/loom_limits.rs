@@ -83,7 +83,7 @@ fn wpo(ends: u16, picks: u16) -> Vec<u8> {
 /// A file of a few megabytes, made when asked for, and whether it is a draft.
 type Flood = (&'static str, fn() -> Vec<u8>, bool);
 
-const FLOODS: [Flood; 20] = [
+const FLOODS: [Flood; 21] = [
     ("dtx threads", || dtx(100_000, 2684, DTX), true),
     ("dtx too large", || dtx(100_000, 100_000, DTX), false),
     (
@@ -156,6 +156,14 @@ const FLOODS: [Flood; 20] = [
     ("dbw comments", || dbw(&many(";\r\n")), false),
     ("dbw sections", || dbw(&many("\\a{\r\n")), false),
     ("dbw fields", || dbw(&many("a==b\r\n")), false),
+    (
+        "dbw long names",
+        || {
+            let name = format!("\\{}{{\r\n", "x".repeat(2_000_000));
+            dbw(&format!("{name}{}}}\r\n", "\\a{\r\n}\r\n".repeat(500_000)))
+        },
+        false,
+    ),
     ("dbw threading", || dbw_plan(100_000, 1, 2000), true),
     ("dbw plan", || dbw_plan(20, 1000, 3000), true),
     ("jc5 cloth", || jc5(8000, 6000, 6_000_000), true),

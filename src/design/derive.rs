@@ -65,8 +65,8 @@ pub enum DeriveError {
     Draft(#[from] DraftError),
 }
 
-/// The most different rows among which unions are looked for.
-const MOST_UNIONS: usize = 2048;
+/// The most words that are compared in looking for unions; beyond, none are looked for.
+const MOST_COMPARED: usize = 1 << 27;
 
 /// A rising-shed draft that weaves `pattern` on `loom`: tie-up and treadling where the
 /// loom has the treadles, else a lift plan on a dobby, else several treadles together.
@@ -107,7 +107,8 @@ pub fn derive(pattern: &WeavePattern, loom: &Loom) -> Result<Draft, DeriveError>
         needed: needed as u32,
         treadles: loom.treadles,
     };
-    if pressed > MOST_UNIONS {
+    let words = (needed as usize).div_ceil(64);
+    if pressed.saturating_mul(pressed).saturating_mul(words) > MOST_COMPARED {
         return Err(too_few(pressed));
     }
     let (tieup, together) = unions(rows_up().collect(), needed);

@@ -37,6 +37,9 @@ const UNTIED: u8 = 12;
 /// Sections nest no deeper.
 const MAX_DEPTH: usize = 30;
 
+/// The longest name of a section that is looked at, bytes.
+const MAX_NAME: usize = 64;
+
 /// Whether bytes are a DB-WEAVE draft.
 pub fn recognises(bytes: &[u8]) -> bool {
     bytes
@@ -191,6 +194,7 @@ impl<'t> File<'t> {
             fields: BTreeMap::new(),
         };
         let mut open: Vec<&str> = Vec::new();
+        let mut here = String::new();
         // Where a value began that goes on over lines, if it is one that is wanted.
         let mut unfinished: Option<(Option<&'static str>, u32, usize)> = None;
         for (number, line) in (1..).zip(lines(text)) {
@@ -208,7 +212,7 @@ impl<'t> File<'t> {
                 continue;
             }
             if let Some((key, value)) = entry.split_once("==") {
-                let path = known_path(&open, key.trim());
+                let path = known_path(&here, key.trim());
                 if goes_on {
                     unfinished = Some((path, number, start_of(value)));
                 } else {
@@ -219,9 +223,17 @@ impl<'t> File<'t> {
                     let problem = format!("expected sections nested at most {MAX_DEPTH} deep");
                     return Err(file.at(number, problem, "this is not a draft"));
                 }
-                open.push(section.trim_end().trim_end_matches('{').trim_end());
+                let section = section.trim_end().trim_end_matches('{').trim_end();
+                // Long names are nobody's, and copying them for each section takes time.
+                open.push(if section.len() <= MAX_NAME {
+                    section
+                } else {
+                    "?"
+                });
+                here = open.join("/");
             } else if entry.starts_with('}') {
                 open.pop();
+                here = open.join("/");
             }
         }
         if unfinished.is_some() || !open.is_empty() {
@@ -348,13 +360,11 @@ impl<'t> File<'t> {
     }
 }
 
-fn known_path(open: &[&str], key: &str) -> Option<&'static str> {
+/// The wanted path of a key in the section `here`.
+fn known_path(here: &str, key: &str) -> Option<&'static str> {
     KNOWN.into_iter().find(|path| {
-        let mut parts = path.split('/');
-        open.iter()
-            .chain([&key])
-            .all(|part| parts.next() == Some(*part))
-            && parts.next().is_none()
+        let below = path.strip_prefix(here);
+        below.and_then(|below| below.strip_prefix('/')) == Some(key)
     })
 }
 

@@ -520,12 +520,12 @@ const WEFT: Side = Side {
 };
 
 impl Side {
-    /// The whole numbers of a list, with the line of each that is none.
+    /// The whole numbers of a list, each up to `most`; `None` = there may be none at all.
     fn list(
         &self,
         file: &File<'_>,
         name: &str,
-        range: std::ops::RangeInclusive<u32>,
+        most: Option<u32>,
         threads: usize,
         warnings: &mut Warnings,
     ) -> Result<Vec<u32>, SheetError> {
@@ -539,23 +539,19 @@ impl Side {
                 warnings.at(line, format!("{what} ({threads}); the rest is ignored"));
                 break;
             }
-            match word.parse::<u32>() {
-                Ok(number) if range.contains(&number) => found.push(number),
-                _ => {
-                    let (low, high) = range.into_inner();
-                    let problem = if high < low {
-                        format!(
-                            "expected a @@Color Palette for the numbers in @@{}",
-                            section.name
-                        )
-                    } else {
-                        let word = shorten(word);
-                        let name = section.name;
-                        format!("expected a number from {low} to {high} in @@{name}, found {word}")
-                    };
-                    return Err(file.at(line, problem, "correct the number or the palette"));
+            let section = section.name;
+            let problem = match (word.parse::<u32>(), most) {
+                (Ok(number), Some(most)) if number <= most => {
+                    found.push(number);
+                    continue;
                 }
-            }
+                (_, None) => format!("expected a @@Color Palette for the numbers in @@{section}"),
+                (_, Some(most)) => {
+                    let word = shorten(word);
+                    format!("expected a number from 0 to {most} in @@{section}, found {word}")
+                }
+            };
+            return Err(file.at(line, problem, "correct the number or the palette"));
         }
         Ok(found)
     }
@@ -567,12 +563,8 @@ impl Side {
         threads: usize,
         warnings: &mut Warnings,
     ) -> Result<Vec<(u32, Srgb)>, SheetError> {
-        // An empty range where there is no palette.
-        let range = match palette.len() as u32 {
-            0 => 1..=0,
-            colours => 0..=colours - 1,
-        };
-        let listed = self.list(file, self.colours, range, threads, warnings)?;
+        let most = (palette.len() as u32).checked_sub(1);
+        let listed = self.list(file, self.colours, most, threads, warnings)?;
         let usual = listed.first().map_or(self.usual, |&first| first + 1);
         colours(palette, &listed, threads, usual).map_err(|thread| {
             let problem = format!("thread {} has a colour that is not there", thread + 1);
@@ -586,7 +578,7 @@ impl Side {
         threads: usize,
         warnings: &mut Warnings,
     ) -> Result<Threads, SheetError> {
-        let steps = self.list(file, self.spacing, 0..=MAX_STEPS, threads, warnings)?;
+        let steps = self.list(file, self.spacing, Some(MAX_STEPS), threads, warnings)?;
         if steps.is_empty() {
             return Ok(Threads::listed(threads, None, Vec::new()));
         }
