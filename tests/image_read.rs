@@ -340,7 +340,7 @@ fn regions_follow_colour_and_not_the_palette_order() {
     let order = |palette: Vec<u8>, indices: [u8; 3]| {
         let (kind, depth) = (png::ColorType::Indexed, png::BitDepth::Eight);
         png_of(kind, depth, size, &indices, |encoder| {
-            encoder.set_palette(palette)
+            encoder.set_palette(palette);
         })
     };
     let one = order(vec![9, 9, 9, 200, 0, 0, 0, 0, 120], [0, 1, 2]);

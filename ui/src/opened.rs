@@ -192,7 +192,10 @@ pub fn writing(args: &ConvertArgs) -> SaveOptions {
             Some(ImageAs::Weave | ImageAs::Picture) | None => ImageContent::Weave,
         }),
         black: args.out_black.unwrap_or(read.black),
-        corner: args.out_origin.or(args.image.origin),
+        corner: args
+            .out_origin
+            .or(args.image.origin)
+            .or(args.image.convention.map(|maker| maker.reading().corner)),
     }
 }
 

@@ -276,6 +276,70 @@ fn a_loom_file_is_written_for_a_loom_and_read_again() {
 }
 
 #[test]
+fn a_weave_goes_out_as_an_image_and_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |arguments: &[&str]| json(&pickglass(folder.path(), arguments));
+    let floats = |file: &str| run(&["check", file, "--json"])["longest_float"].clone();
+    let own = floats("wavy-twill");
+    for file in ["a.png", "a.bmp", "a.tif", "a.gif", "a.wif", "a.ron"] {
+        let report = run(&["convert", "wavy-twill", file, "--json"]);
+        has_keys(&report, &["written", "lost"]);
+        let lost = report["lost"].as_array().expect("a list");
+        assert_eq!(lost.is_empty(), file.ends_with("ron"), "{file}: {lost:?}");
+        assert_eq!(floats(file), own, "{file}");
+    }
+    // Black for the weft and read for the warp: face and back change places.
+    run(&[
+        "convert",
+        "twill-satin",
+        "b.tif",
+        "--out-black",
+        "weft",
+        "--json",
+    ]);
+    let (face, turned) = (floats("twill-satin"), floats("b.tif"));
+    assert_eq!(face["warp_face"], turned["weft_face"]);
+    let told = run(&["check", "b.tif", "--black", "weft", "--json"]);
+    assert_eq!(told["longest_float"], face);
+}
+
+#[test]
+fn artwork_and_yarn_images_make_one_design() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |arguments: &[&str]| json(&pickglass(folder.path(), arguments));
+    for (side, file) in [
+        ("warp", "warp.bmp"),
+        ("weft", "weft.tif"),
+        ("weave", "weave.png"),
+    ] {
+        run(&["convert", "tweed", file, "--write", side, "--json"]);
+    }
+    let line = [
+        "convert",
+        "weave.png",
+        "all.ron",
+        "--warp-map",
+        "warp.bmp",
+        "--weft-map",
+        "weft.tif",
+        "--json",
+    ];
+    run(&line);
+    let (all, weave) = (
+        run(&["check", "all.ron", "--json"]),
+        run(&["check", "weave.png", "--json"]),
+    );
+    assert_eq!(all["longest_float"], weave["longest_float"]);
+    assert_eq!(all["weavable"], true);
+    let line = ["convert", "denim", "x.ron", "--warp-map", "warp.bmp"];
+    let text = refused(&pickglass(folder.path(), &line), 1);
+    assert!(
+        text.contains("warp.bmp") && text.contains("the size of"),
+        "{text}"
+    );
+}
+
+#[test]
 fn errors_are_one_line_and_exit_1() {
     let folder = tempfile::tempdir().expect("a folder");
     for line in [
@@ -318,6 +382,8 @@ fn wrong_usage_exits_2() {
         &["still", "oxford", "-o", "a.png", "--view", "above"],
         &["still", "oxford", "-o", "a.png", "--light", "candle"],
         &["check", "oxford", "--sett", "zero"],
+        &["check", "oxford", "--as", "painting"],
+        &["check", "oxford", "--origin", "middle"],
         &["check"],
         &["check", "oxford", "--unknown"],
     ] {

@@ -13,10 +13,9 @@ use super::raster::{fill_palette, unpack};
 use super::{Fault, Pixels, Raster, SAVE_PLAIN, check_declared};
 use crate::design::Srgb;
 
-/// Run lengths hold at most 255 pixels in two bytes, and a jump skips 255 rows in four:
-/// what a jump or an early end leaves out is colour 0, at no cost at all. So only the
-/// bits of uncompressed pixels bound a size.
-const MOST_PER_BYTE_PACKED: u64 = 1 << 16;
+/// Run lengths hold at most 255 pixels in two bytes. Jumps skip more at less cost, but a
+/// file that is mostly jumps is made to fill memory.
+const MOST_PER_BYTE_PACKED: u64 = 1024;
 
 /// The fields of a header that matter here.
 struct Header {

@@ -13,7 +13,7 @@ use crate::tokens::{self, Palette};
 const NEVER_OPENED: f64 = 1.5;
 
 /// Endings that the dialog shows; files are known by their content.
-const OPENED: [&str; 11] = [
+const OPENED: [&str; 15] = [
     "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg", "jpeg", "webp",
 ];
 
