@@ -22,7 +22,9 @@ const ALIKE: f64 = 0.9;
 /// Pixels across the picture.
 const WIDTH: u32 = 120;
 /// Samples a pixel.
-const SPP: u32 = 2;
+const SPP: u32 = 3;
+/// Pixels along a side of the squares that blur the picture.
+const BLUR: u32 = 6;
 
 /// A portrait of sorts, drawn: a lit ball and its shadow on a graded ground, with a coloured
 /// band. Used where the photograph is not there.
@@ -158,17 +160,17 @@ fn luminance(colour: Vec3) -> f64 {
     f64::from(colour.dot(Vec3::new(0.2126, 0.7152, 0.0722)))
 }
 
-/// Correlation of the lightness of the picture and the photograph, in squares of 4 × 4
-/// pixels.
+/// Correlation of the light of the blurred picture and the photograph. Glints are cut off at
+/// white, as in a picture's file.
 fn likeness(shown: &Shown, source: &SourceImage) -> f64 {
-    let (columns, rows) = (WIDTH / 4, shown.height / 4);
+    let (columns, rows) = (WIDTH / BLUR, shown.height / BLUR);
     let mut pairs = Vec::new();
     for row in 0..rows {
         for column in 0..columns {
             let mut here = 0.0;
-            for k in 0..16 {
-                let at = (row * 4 + k / 4) * WIDTH + column * 4 + k % 4;
-                here += luminance(shown.pixels[at as usize]) / 16.0;
+            for k in 0..BLUR * BLUR {
+                let at = (row * BLUR + k / BLUR) * WIDTH + column * BLUR + k % BLUR;
+                here += luminance(shown.pixels[at as usize].min(Vec3::ONE));
             }
             let range = |at: u32, all: u32, size: u32| at * size / all..(at + 1) * size / all;
             let (mut there, mut count) = (0.0, 0.0);

@@ -101,7 +101,8 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Photo, PhotoError> {
     let file = || name.to_owned();
     let damaged = |error: image::ImageError| PhotoError::Damaged {
         file: file(),
-        problem: error.to_string(),
+        // Decoders' messages may have several lines.
+        problem: (error.to_string().split_whitespace().collect::<Vec<_>>()).join(" "),
     };
     let Ok(format) = image::guess_format(bytes) else {
         return Err(PhotoError::Unknown { file: file() });

@@ -4,9 +4,7 @@
 use super::series::{DARKEST, LIGHTEST, shadow_weave};
 use super::settings::PosteriseSettings;
 use crate::cloth::expected::expected_colour;
-use crate::design::{
-    Design, Fill, Sett, Srgb, WeavePattern, Yarn, YarnId, YarnMaps, delta_e_00, lab,
-};
+use crate::design::{Design, Fill, Lab, Sett, Srgb, WeavePattern, Yarn, YarnId, YarnMaps, lab};
 
 /// Diameter over pitch of the yarns: dense cloth, as jacquards are, that hides what lies
 /// behind it.
@@ -18,8 +16,12 @@ const TRIED: usize = 8;
 const DARKER: [f32; 3] = [1.0, 0.5, 0.25];
 /// How much lighter the weft is tried.
 const LIGHTER: [f32; 3] = [1.0, 1.4, 2.0];
+/// What squared differences of a* and b* count beside those of L*.
+const HUE_WEIGHT: f64 = 0.1;
 /// A black that dyers reach.
 const BLACK: Srgb = Srgb(0x1c, 0x1b, 0x1d);
+/// No dye leaves less light than this in any channel, linear.
+const LEAST_LIGHT: f32 = 0.01;
 
 /// The two yarns of a cloth.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +90,13 @@ fn pair_in(settings: &PosteriseSettings, [warp, weft]: [Srgb; 2]) -> Pair {
     }
 }
 
+/// How far a mixture is from a colour in the eyes of a picture: two yarns meet lightness,
+/// which makes the drawing, and hue only by luck.
+fn unlikeness(asked: Lab, shown: Lab) -> f64 {
+    let [l, a, b] = [0, 1, 2].map(|at| (asked[at] - shown[at]).powi(2));
+    l + HUE_WEIGHT * (a + b)
+}
+
 /// The colours that most of a half of the picture has, scaled in light, and `own`.
 fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], own: Srgb) -> Vec<Srgb> {
     let mut most = half.to_vec();
@@ -98,7 +107,8 @@ fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], own: Srgb) -> Vec<Srgb> {
         found.extend(scales.map(|scale| {
             // Lighter yarns keep their hue: no channel is cut off.
             let most = 0.8 / light.max_element().max(1e-6);
-            Srgb::from_linear(light * scale.min(most.max(1.0)))
+            let scaled = light * scale.min(most.max(1.0));
+            Srgb::from_linear(scaled.max(glam::Vec3::splat(LEAST_LIGHT)))
         }));
     }
     found.sort_unstable();
@@ -106,8 +116,8 @@ fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], own: Srgb) -> Vec<Srgb> {
     found
 }
 
-/// The dark and the light yarn whose mixtures are nearest to the picture's colours, by
-/// ΔE₀₀ weighted with coverage; the warp is the dark one.
+/// The dark and the light yarn whose mixtures are nearest to the picture's colours, in mean
+/// squares weighted with coverage; the warp is the dark one.
 fn pair(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Pair {
     if let Some(colours) = settings.yarns {
         return pair_in(settings, colours);
@@ -135,7 +145,7 @@ fn pair(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Pair 
                     let nearest = shown
                         .iter()
                         .min_by(|a, b| (a[0] - asked[0]).abs().total_cmp(&(b[0] - asked[0]).abs()));
-                    share * nearest.map_or(0.0, |shown| delta_e_00(*asked, *shown))
+                    share * nearest.map_or(0.0, |shown| unlikeness(*asked, *shown))
                 })
                 .sum();
             if off < best.0 {
