@@ -14,7 +14,8 @@ const NEVER_OPENED: f64 = 1.5;
 
 /// Endings that the dialog shows; files are known by their content.
 const OPENED: [&str; 15] = [
-    "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg", "jpeg", "webp",
+    "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg",
+    "jpeg", "webp",
 ];
 
 /// What opening came to.
