@@ -13,7 +13,7 @@ use crate::design::YarnId;
 use crate::synthesis::{Face, Neighbourhood, Side};
 
 /// Most crossings that are made ready: a picture of more is not close enough to need it.
-const MOST: usize = 1 << 20;
+const MOST: usize = 1 << 21;
 /// Most memory in which shifts are kept, once worked out, bytes.
 const MOST_SHIFTS: usize = 1 << 28;
 /// Threads kept beyond the rectangle, for yarns that bulge past it.

@@ -332,8 +332,11 @@ fn save_image(
 /// Reads a draft or loom file.
 type LoomReader = fn(&[u8], &str, &LoadOptions) -> Result<Imported, SheetError>;
 
+/// Tells a format by its content.
+type Recogniser = fn(&[u8]) -> bool;
+
 /// Draft and loom files: how each is known, and its reader.
-const LOOM_FORMATS: [(fn(&[u8]) -> bool, LoomReader); 4] = [
+const LOOM_FORMATS: [(Recogniser, LoomReader); 4] = [
     (dtx::recognises, dtx::read),
     (wpo::recognises, wpo::read),
     (dbw::recognises, dbw::read),

@@ -2,6 +2,7 @@
 
 use super::request::{EffectBase, EffectChoice};
 use crate::cloth::ClothSettings;
+use crate::formats::png::Depth;
 use crate::render::RenderSettings;
 use crate::synthesis::{Method, Rank};
 
@@ -54,7 +55,7 @@ pub struct Dial {
 }
 
 /// The dials.
-pub const DIALS: [Dial; 10] = [
+pub const DIALS: [Dial; 11] = [
     Dial {
         name: "denoise",
         values: "off or on",
@@ -90,6 +91,10 @@ pub const DIALS: [Dial; 10] = [
     Dial {
         name: "pass-spp",
         values: "1 to 1024",
+    },
+    Dial {
+        name: "png-bits",
+        values: "8 or 16",
     },
     Dial {
         name: "backing-layers",
@@ -166,6 +171,9 @@ pub(super) fn turn(
             "denoise" => {
                 switch(value).ok_or_else(wrong)?;
             }
+            "png-bits" => {
+                depth(value).ok_or_else(wrong)?;
+            }
             "level" => cloth.level = number(0, 4)?,
             "order" => render.max_order = number(1, 4096)?,
             "roulette-order" if value == "never" => render.roulette_order = u32::MAX,
@@ -192,10 +200,30 @@ fn switch(value: &str) -> Option<bool> {
     }
 }
 
+fn depth(value: &str) -> Option<Depth> {
+    match value {
+        "8" => Some(Depth::Eight),
+        "16" => Some(Depth::Sixteen),
+        _ => None,
+    }
+}
+
 /// Whether a request wants its picture denoised for showing; it does unless it says no.
 pub(super) fn denoises(dials: &[(String, String)]) -> bool {
-    let dial = dials.iter().rev().find(|(name, _)| name == "denoise");
-    dial.and_then(|(_, value)| switch(value)).unwrap_or(true)
+    last(dials, "denoise").and_then(switch).unwrap_or(true)
+}
+
+/// Bits of a sample of a request's PNG; 8 unless it says otherwise.
+pub(super) fn png_depth(dials: &[(String, String)]) -> Depth {
+    last(dials, "png-bits")
+        .and_then(depth)
+        .unwrap_or(Depth::Eight)
+}
+
+/// The last value that a dial was turned to.
+fn last<'d>(dials: &'d [(String, String)], dial: &str) -> Option<&'d str> {
+    let turned = dials.iter().rev().find(|(name, _)| name == dial);
+    turned.map(|(_, value)| value.as_str())
 }
 
 /// Leaves out the effects that a request leaves out; returns which are on.
@@ -251,6 +279,8 @@ mod tests {
         assert_eq!(set("level", "2").unwrap().0.level, 2);
         assert_eq!(set("rank", "exact").unwrap().0.synthesis.rank, Rank::Exact);
         assert_eq!(set("order", "7").unwrap().1.max_order, 7);
+        let bits = |value: &str| png_depth(&[("png-bits".to_owned(), value.to_owned())]);
+        assert!(bits("16") == Depth::Sixteen && png_depth(&[]) == Depth::Eight);
         assert_eq!(
             set("roulette-order", "never").unwrap().1.roulette_order,
             u32::MAX
@@ -264,6 +294,7 @@ mod tests {
             ("rank", "-1"),
             ("order", "0"),
             ("method", "best"),
+            ("png-bits", "12"),
         ] {
             let message = set(name, value).unwrap_err().to_string();
             assert!(

@@ -311,6 +311,7 @@ pub fn render(
         film: outcome.film,
         tone,
         denoise,
+        depth: effects::png_depth(&request.dials),
         pixels_per_mm: camera.pixels_per_mm(),
         texts,
     })
@@ -371,6 +372,7 @@ pub struct Still {
     pub film: Film,
     tone: Tone,
     denoise: bool,
+    depth: png::Depth,
     pub(super) pixels_per_mm: f32,
     pub(super) texts: Vec<(String, String)>,
 }
@@ -397,7 +399,7 @@ impl Still {
                     pixels_per_mm: Some(self.pixels_per_mm),
                     texts: self.texts.clone(),
                 };
-                png::write(path, &self.picture(), png::Depth::Eight, &metadata)?;
+                png::write(path, &self.picture(), self.depth, &metadata)?;
             }
             Some(ending) if ending.eq_ignore_ascii_case("exr") => {
                 exr::write(path, &self.film, self.pixels_per_mm, &self.texts)?;

@@ -65,12 +65,22 @@ pub fn run(opened: Opened, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
         Err(error) if shown.load(Ordering::Relaxed) => Err(NoWindow::Broken(anyhow::anyhow!(
             "the window broke ({error}): start again, or use `pickglass still`"
         ))),
-        Err(error) => {
-            let text = error.to_string();
-            let reason = text.split_whitespace().collect::<Vec<_>>().join(" ");
-            Err(NoWindow::Unavailable(reason))
-        }
+        Err(error) => Err(NoWindow::Unavailable(few_words(&error.to_string()))),
     }
+}
+
+/// The beginning of an error, without the places in code that some append.
+fn few_words(error: &str) -> String {
+    const MOST: usize = 100;
+    let plain: Vec<&str> = (error.split_whitespace())
+        .take_while(|word| !word.contains("/src/") && !word.contains(".rs"))
+        .collect();
+    let mut words = plain.join(" ");
+    if let Some((end, _)) = words.char_indices().nth(MOST) {
+        words.truncate(end);
+        words.push('…');
+    }
+    words.trim_end_matches([':', ',', '(', ' ']).to_owned()
 }
 
 /// Whether the environment names a display; systems without such names always have one.
@@ -80,4 +90,17 @@ fn display_named() -> bool {
         || named("DISPLAY")
         || named("WAYLAND_DISPLAY")
         || named("WAYLAND_SOCKET")
+}
+
+#[cfg(test)]
+mod few_words_tests {
+    use super::few_words;
+
+    #[test]
+    fn a_reason_is_short_and_names_no_place_in_code() {
+        let long = "winit EventLoopError: os error at /home/x/src/platform/mod.rs:762: failed";
+        assert_eq!(few_words(long), "winit EventLoopError: os error at");
+        assert_eq!(few_words("no \n adapter"), "no adapter");
+        assert_eq!(few_words(&"é".repeat(300)).chars().count(), 101);
+    }
 }
