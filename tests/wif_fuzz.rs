@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+mod mutation;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use mutation::mutated;
 use pickglass::design::{Design, YarnMap};
 use pickglass::formats::{FormatError, LoadOptions, load_bytes, presets, ron, wif};
 use proptest::prelude::*;
@@ -84,51 +87,23 @@ fn a_design_cut_at_every_length_is_refused() {
     }
 }
 
-/// Numbers for a mutation, from a counter: the same in every run.
-fn hash(counter: u64) -> u64 {
-    let mut x = counter.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
-}
-
-fn mutated(bytes: &[u8], seed: u64) -> Vec<u8> {
-    const PIECES: [&[u8]; 14] = [
-        b"=",
-        b"\n",
-        b"[",
-        b"]",
-        b";",
-        b",",
-        b"0",
-        b"-1",
-        b"99999999999",
-        b"NaN",
-        b"\\\n",
-        b"\xff",
-        b"[WARP]\n",
-        b"1e39",
-    ];
-    let mut bytes = bytes.to_vec();
-    for step in 0..=hash(seed) % 4 {
-        let pick = hash(seed * 31 + step);
-        let at = (pick >> 8) as usize % (bytes.len() + 1);
-        match pick % 4 {
-            0 => bytes.truncate(bytes.len() - (pick >> 40) as usize % (bytes.len() / 4 + 1)),
-            1 if at < bytes.len() => bytes[at] = (pick >> 48) as u8,
-            2 if at < bytes.len() => {
-                let to = (at + (pick >> 40) as usize % 40).min(bytes.len());
-                bytes.drain(at..to);
-            }
-            _ => {
-                let piece = PIECES[(pick >> 32) as usize % PIECES.len()];
-                bytes.splice(at..at, piece.iter().copied());
-            }
-        }
-    }
-    bytes
-}
-
+/// What is put in at random places.
+const PIECES: [&[u8]; 14] = [
+    b"=",
+    b"\n",
+    b"[",
+    b"]",
+    b";",
+    b",",
+    b"0",
+    b"-1",
+    b"99999999999",
+    b"NaN",
+    b"\\\n",
+    b"\xff",
+    b"[WARP]\n",
+    b"1e39",
+];
 #[test]
 fn mutated_drafts_and_designs_give_an_answer() {
     let mut sources: Vec<Vec<u8>> = fixtures().into_iter().map(|(_, bytes)| bytes).collect();
@@ -140,7 +115,7 @@ fn mutated_drafts_and_designs_give_an_answer() {
     let rounds = 300;
     for (index, source) in sources.iter().enumerate() {
         for round in 0..rounds {
-            let bytes = mutated(source, (index as u64) << 32 | round);
+            let bytes = mutated(source, (index as u64) << 32 | round, &PIECES);
             read += usize::from(survives(&bytes));
         }
     }
@@ -153,7 +128,7 @@ fn mutated_drafts_and_designs_give_an_answer() {
 fn what_is_read_can_be_written_and_read_again() {
     for (index, (_, source)) in fixtures().iter().enumerate() {
         for round in 0..60 {
-            let bytes = mutated(source, (index as u64) << 32 | round | 1 << 20);
+            let bytes = mutated(source, (index as u64) << 32 | round | 1 << 20, &PIECES);
             let Ok(first) = wif::read(&bytes, "x") else {
                 continue;
             };
