@@ -10,6 +10,7 @@
 
 mod build;
 pub mod colour;
+mod export;
 mod hair_cells;
 mod hairs;
 mod lookup;
@@ -17,5 +18,6 @@ mod walk;
 mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
+pub use export::{ClothWindow, Part, Region, WindowError};
 pub use hairs::{HairLayer, HairWalk};
 pub use walk::ClothWalk;

@@ -2,14 +2,17 @@
 //!
 //! [`load`] recognises a design or draft by its content, not by its name. `ron` is the
 //! design document, `wif` the weavers' interchange format; `atomic` writes files so that
-//! nothing is ever half-written.
+//! nothing is ever half-written. `volume` takes
+//! cloth out as voxels and reads them in; `yarns` takes it out as curves and tubes.
 
 pub mod atomic;
 pub mod exr;
 pub mod png;
 pub mod presets;
 pub mod ron;
+pub mod volume;
 pub mod wif;
+pub mod yarns;
 
 use std::io::Read;
 use std::path::Path;

@@ -1,14 +1,17 @@
 //! Stills: from a design and a request to a picture, for the command line and the window.
 //!
 //! [`prepare`] makes the cloth (exemplars, synthesis, colours), [`render()`] traces it pass
-//! by pass and calls back after each, and [`Still::save`] writes the result. Both the
-//! command line and the window are consumers of the same passes.
+//! by pass and calls back after each, and [`Still::save`] writes the result.
+//! [`render_grid`] does the same with a volume that was read. Both the command line and
+//! the window are consumers of the same passes.
 
 mod effects;
+mod grid;
 mod picture;
 mod request;
 
 pub use effects::{DIALS, DialError, EFFECTS};
+pub use grid::{render_grid, scene_files};
 pub use picture::{Pass, PreparedCloth, Still, prepare, render, render_still, usual_width_mm};
 pub use request::{EffectBase, EffectChoice, LightChoice, StillReport, StillRequest, Stop};
 
@@ -18,6 +21,7 @@ use crate::cloth::ClothError;
 use crate::exemplar::ExemplarError;
 use crate::formats::exr::ExrError;
 use crate::formats::png::PngError;
+use crate::formats::volume::VolumeFileError;
 use crate::job::Cancelled;
 use crate::render::LightError;
 
@@ -45,6 +49,9 @@ pub enum StillError {
     /// A width of cloth that is not a length.
     #[error("a picture {0} mm wide cannot be made; give a width between 0.01 and 10000 mm")]
     Width(f32),
+    /// The volume could not be read.
+    #[error(transparent)]
+    Volume(VolumeFileError),
     /// The picture could not be written.
     #[error(transparent)]
     Png(#[from] PngError),
@@ -56,6 +63,15 @@ pub enum StillError {
 impl From<Cancelled> for StillError {
     fn from(cancelled: Cancelled) -> Self {
         Self::Cancelled(cancelled)
+    }
+}
+
+impl From<VolumeFileError> for StillError {
+    fn from(error: VolumeFileError) -> Self {
+        match error {
+            VolumeFileError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Volume(other),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod check;
 mod convert;
 mod still;
 mod synthesize;
+mod volume;
 mod window;
 
 use std::path::Path;
@@ -22,6 +23,7 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Synthesize(args)) => synthesize::run(&args),
         Some(Command::Still(args)) => still::run(&args),
+        Some(Command::Volume(args)) => volume::run(&args),
     }
 }
 
