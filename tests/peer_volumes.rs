@@ -5,12 +5,11 @@ mod volume_sources;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use glam::{DVec3, UVec3};
+use glam::UVec3;
 use pickglass::formats::presets;
 use pickglass::formats::volume;
 use pickglass::formats::yarns;
 use pickglass::job::Job;
-use pickglass::volume::source::Frame;
 use pickglass::yarn::tubes::tubes;
 use volume_sources::{Rule, python, write_truth};
 
@@ -172,29 +171,6 @@ fn openvdb_s_own_programs_take_vdb() {
     if let Some(said) = tool("nanovdb_validate", &[&nano]) {
         assert!(!said.to_lowercase().contains("invalid"), "{said}");
     }
-}
-
-#[test]
-fn a_large_stack_is_a_big_tiff() {
-    let Some(python) = python() else {
-        return skipped("tifffile");
-    };
-    // 4.1 GB that are never written: the head and directories alone, over a hole.
-    let rule = Rule {
-        frame: Frame {
-            size: UVec3::new(8192, 8192, 31),
-            origin_mm: DVec3::ZERO,
-            edge_mm: 0.01,
-        },
-        filled: 0,
-        ..Rule::new(SIZE)
-    };
-    let plan = volume::plan(&rule, &std::env::temp_dir().join("big.tif"), &[]);
-    match plan {
-        Ok(plan) => assert!(plan.files[0].1 > 4 << 30, "{:?}", plan.files),
-        Err(error) => println!("not planned: {error}"),
-    }
-    drop(python);
 }
 
 #[test]

@@ -28,8 +28,6 @@ pub(super) enum Channel {
     Albedo,
     /// S as 6 × f32: Sxx, Syy, Szz, Sxy, Sxz, Syz.
     Sggx,
-    /// S as 6 × f32: Sxx, Sxy, Sxz, Syy, Syz, Szz.
-    SggxByRows,
     /// Yarn number, i16; −1 in empty space.
     Yarn,
     /// Extinction in units of this much, u16.
@@ -44,7 +42,7 @@ impl Channel {
         match self {
             Self::Sigma => 4,
             Self::Albedo => 12,
-            Self::Sggx | Self::SggxByRows => 24,
+            Self::Sggx => 24,
             Self::Yarn | Self::Sigma16(_) | Self::Yarn16 => 2,
         }
     }
@@ -53,7 +51,7 @@ impl Channel {
     pub fn components(self) -> u32 {
         match self {
             Self::Albedo => 3,
-            Self::Sggx | Self::SggxByRows => 6,
+            Self::Sggx => 6,
             _ => 1,
         }
     }
@@ -63,10 +61,6 @@ impl Channel {
             Self::Sigma => put_floats(&[voxel.sigma], out),
             Self::Albedo => put_floats(&albedo(voxel, albedos).to_array(), out),
             Self::Sggx => put_floats(&voxel.sggx(), out),
-            Self::SggxByRows => {
-                let [xx, yy, zz, xy, xz, yz] = voxel.sggx();
-                put_floats(&[xx, xy, xz, yy, yz, zz], out);
-            }
             Self::Yarn => {
                 let yarn = i16::try_from(voxel.yarn).unwrap_or(i16::MAX);
                 out.copy_from_slice(&yarn.to_le_bytes());

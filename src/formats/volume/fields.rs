@@ -104,8 +104,6 @@ pub(super) struct Field {
     pub big_endian: bool,
     /// Bytes before the first.
     pub offset: u64,
-    /// Whether six components stand as xx xy xz yy yz zz.
-    pub sggx_by_rows: bool,
 }
 
 impl Field {

@@ -122,7 +122,6 @@ pub(super) fn field(start: &[u8], path: &Path) -> Result<Field, VolumeFileError>
         scalar,
         big_endian,
         offset: 0,
-        sggx_by_rows: false,
     }
     .checked(length.len())
 }

@@ -37,8 +37,8 @@ pub(super) fn layers(frame: &Frame, path: &Path) -> Result<Vec<Layer>, VolumeFil
         ),
         layer(
             beside(path, "sggx"),
-            Channel::SggxByRows,
-            "SGGX matrix of the fibres",
+            Channel::Sggx,
+            "SGGX matrix of the fibres: xx yy zz xy xz yz",
         ),
         layer(
             beside(path, "yarn"),
@@ -56,8 +56,7 @@ fn head(frame: &Frame, channel: Channel, content: &str) -> Vec<u8> {
     let components = channel.components();
     let (first_size, first_none, first_kind) = match components {
         1 => (String::new(), "", ""),
-        3 => ("3 ".to_owned(), "none ", "RGB-color "),
-        n => (format!("{n} "), "none ", "3D-symmetric-matrix "),
+        n => (format!("{n} "), "none ", "vector "),
     };
     let dimension = if components == 1 { 3 } else { 4 };
     let scalar = if channel == Channel::Yarn {
@@ -120,7 +119,6 @@ pub(super) fn field(start: &[u8], length: u64, path: &Path) -> Result<Field, Vol
         scalar,
         big_endian: head.big_endian,
         offset: end as u64,
-        sggx_by_rows: components == 6,
     }
     .checked(length)
 }

@@ -82,7 +82,6 @@ pub fn read(path: &Path, taps: Taps, job: &Job) -> Result<GridFile, VolumeFileEr
     let mut fields = Fields {
         sigma: sigma.open()?,
         albedo: albedo.as_ref().map(Field::open).transpose()?,
-        by_rows: sggx.as_ref().is_some_and(|field| field.sggx_by_rows),
         sggx: sggx.as_ref().map(Field::open).transpose()?,
         unlike: 0,
     };
@@ -169,7 +168,6 @@ struct Fields {
     sigma: Rows,
     albedo: Option<Rows>,
     sggx: Option<Rows>,
-    by_rows: bool,
     /// Voxels whose S is far from that of fibres.
     unlike: u64,
 }
@@ -185,14 +183,10 @@ impl Fields {
             Some(rows) => Vec3::from_array(rows.at::<3>(cell)),
             None => Vec3::splat(GREY),
         };
-        let mut s = match &mut self.sggx {
+        let s = match &mut self.sggx {
             Some(rows) => rows.at::<6>(cell),
             None => [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
         };
-        if self.by_rows {
-            let [xx, xy, xz, yy, yz, zz] = s;
-            s = [xx, yy, zz, xy, xz, yz];
-        }
         let (scale, direction, alpha, unlike) = match fibres_of(s) {
             Some(fibres) => fibres,
             None => (1.0, Vec3::Z, 1.0, 1.0),

@@ -181,3 +181,56 @@ impl Directories {
         self.put(&bytes);
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
+mod tests {
+    use super::*;
+    use glam::{DVec3, UVec3};
+    use std::io::{Seek, SeekFrom, Write};
+    use tiff::decoder::{Decoder, Limits};
+
+    /// Pages and their sizes as another reader finds them, over a hole for the voxels.
+    fn pages(size: UVec3) -> Vec<(u32, u32)> {
+        let frame = Frame {
+            size,
+            origin_mm: DVec3::ZERO,
+            edge_mm: 0.01,
+        };
+        let (head, tail) = around(&frame, "about\n");
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&head).unwrap();
+        let voxels = frame.voxels() * 2;
+        file.seek(SeekFrom::Start(head.len() as u64 + voxels))
+            .unwrap();
+        file.write_all(&tail).unwrap();
+        file.seek(SeekFrom::Start(0)).unwrap();
+        let mut decoder = Decoder::new(file).unwrap().with_limits(Limits::unlimited());
+        let mut found = vec![decoder.dimensions().unwrap()];
+        while decoder.more_images() {
+            decoder.next_image().unwrap();
+            found.push(decoder.dimensions().unwrap());
+        }
+        found
+    }
+
+    #[test]
+    fn stacks_beyond_four_gigabytes_are_big() {
+        for size in [UVec3::new(5, 3, 2), UVec3::new(8192, 8192, 40)] {
+            let big = around(
+                &Frame {
+                    size,
+                    origin_mm: DVec3::ZERO,
+                    edge_mm: 1.0,
+                },
+                "",
+            )
+            .0
+            .len()
+                == 16;
+            assert_eq!(big, size.z == 40);
+            let expected = vec![(size.x, size.y); size.z as usize];
+            assert_eq!(pages(size), expected);
+        }
+    }
+}

@@ -94,7 +94,6 @@ pub(super) fn field(start: &[u8], length: u64, path: &Path) -> Result<Field, Vol
         scalar: Scalar::F32,
         big_endian: false,
         offset: HEAD as u64,
-        sggx_by_rows: false,
     }
     .checked(length)
 }
