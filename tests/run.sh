@@ -182,7 +182,7 @@ smoke_no_display() {
 }
 
 run_tests() {
-    cargo test --release --workspace --quiet
+    cargo test --release --workspace --quiet --no-fail-fast
 }
 
 # The table of asked and shown colours, which the tests alone do not print.
