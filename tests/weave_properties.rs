@@ -179,6 +179,31 @@ proptest! {
 }
 
 #[test]
+fn every_small_weave_can_be_bound() {
+    for (ends, picks) in [
+        (2, 2),
+        (2, 3),
+        (3, 2),
+        (3, 3),
+        (2, 5),
+        (5, 2),
+        (4, 3),
+        (3, 4),
+        (4, 4),
+    ] {
+        for bits in 0..1u32 << (ends * picks) {
+            let asked = WeavePattern::from_fn(ends, picks, |end, pick| {
+                bits >> (end + ends * pick) & 1 == 1
+            });
+            for most in 2..4 {
+                let bound = bind_floats(&asked, most).unwrap();
+                assert!(longest(&bound) <= most, "{asked}to {most}:\n{bound}");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_measure_of_binding_can_fail() {
     let bare = WeavePattern::new(9, 9);
     assert_eq!(longest(&bare), u32::MAX);

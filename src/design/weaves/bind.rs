@@ -345,6 +345,39 @@ mod tests {
     }
 
     #[test]
+    fn turning_plain_weave_back_never_makes_a_float_too_long() {
+        let mut bits = 0x2545_f491_4f6c_dd1d_u64;
+        for (ends, picks) in [(5, 7), (9, 4), (16, 16), (3, 3)] {
+            let asked = WeavePattern::from_fn(ends, picks, |_, _| {
+                bits = crate::hash::mix(bits);
+                bits & 3 == 0
+            });
+            for longest in 2..6 {
+                let plain = nearest_plain(&asked);
+                let mut bound = Binding {
+                    weave: plain.clone(),
+                    longest,
+                };
+                bound.turn_back_to(&asked);
+                for end in 0..ends {
+                    assert!(bound.long_floats(false, end).is_empty());
+                }
+                for pick in 0..picks {
+                    assert!(bound.long_floats(true, pick).is_empty());
+                }
+                let kept = |weave: &WeavePattern| {
+                    let crossings = (0..picks).flat_map(|p| (0..ends).map(move |e| (e, p)));
+                    crossings
+                        .filter(|&(e, p)| weave.get(e, p) == asked.get(e, p))
+                        .count()
+                };
+                assert!(kept(&bound.weave) >= kept(&plain));
+                assert!(longest < 5 || kept(&bound.weave) > kept(&plain));
+            }
+        }
+    }
+
+    #[test]
     fn what_cannot_be_bound_is_refused() {
         let bare = WeavePattern::new(3, 4);
         assert_eq!(bind_floats(&bare, 0), Err(BindError::Zero));
