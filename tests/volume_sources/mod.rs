@@ -53,7 +53,7 @@ impl Rule {
             } else {
                 5.0 + 90.0 * part(32)
             },
-            direction: direction.normalize(),
+            direction: direction.normalize_or(Vec3::Z),
             alpha: [0.125, 0.5][yarn as usize],
             yarn,
         }
