@@ -24,7 +24,7 @@ const WIDTH: u32 = 120;
 /// Samples a pixel.
 const SPP: u32 = 3;
 /// Pixels along a side of the squares that blur the picture.
-const BLUR: u32 = 6;
+const BLUR: u32 = 10;
 
 /// A portrait of sorts, drawn: a lit ball and its shadow on a graded ground, with a coloured
 /// band. Used where the photograph is not there.
