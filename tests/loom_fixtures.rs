@@ -152,6 +152,21 @@ fn a_weavepoint_draft_is_read() {
 }
 
 #[test]
+fn gifs_are_read_pixel_by_pixel() {
+    expect("weave.gif", &LoadOptions::default(), CLOTH);
+    let bytes = std::fs::read(fixtures().join("flag.gif")).unwrap();
+    let flag = pickglass::formats::image::read(&bytes, "flag.gif").unwrap();
+    assert_eq!((flag.raster.width(), flag.raster.height()), (13, 11));
+    let palette = [Srgb(200, 30, 40), Srgb(240, 240, 230), Srgb(20, 40, 160)];
+    for y in 0..11 {
+        for x in 0..13 {
+            let index = ((x + 2 * y) / 8).min(2) as usize;
+            assert_eq!(flag.raster.colour(x, y), palette[index], "{x}, {y}");
+        }
+    }
+}
+
+#[test]
 fn the_script_still_makes_these_files() {
     let folder = tempfile::tempdir().unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/fixtures.py");
@@ -178,5 +193,5 @@ fn the_script_still_makes_these_files() {
         compared += 1;
     }
     assert_eq!(compared, std::fs::read_dir(folder.path()).unwrap().count());
-    assert_eq!(compared, 9);
+    assert_eq!(compared, 11);
 }

@@ -254,6 +254,30 @@ def old_wpo():
     return wpo(3, 100, 3, 3, 1, 0, 0, (3, 3), lists, lifting, palette)
 
 
+def gif(pixels, palette, interlaced=False):
+    """Pixels of up to four colours, top row first. A clear code after every two pixels keeps
+    the dictionary empty and all codes three bits wide."""
+    height, width = len(pixels), len(pixels[0])
+    order = range(height)
+    if interlaced:
+        passes = [(0, 8), (4, 8), (2, 4), (1, 2)]
+        order = [row for start, step in passes for row in range(start, height, step)]
+    codes = []
+    for k, pixel in enumerate(pixel for row in order for pixel in pixels[row]):
+        codes += [4, pixel] if k % 2 == 0 else [pixel]
+    codes.append(5)
+    bits = sum(code << (3 * k) for k, code in enumerate(codes))
+    packed = bits.to_bytes((3 * len(codes) + 7) // 8, "little")
+    table = b"".join(bytes(rgb) for rgb in palette + [(0, 0, 0)] * (4 - len(palette)))
+    out = b"GIF89a" + struct.pack("<HHBBB", width, height, 0x81, 0, 0) + table
+    out += struct.pack("<BHHHHB", 0x2C, 0, 0, width, height, 0x40 if interlaced else 0)
+    out += b"\x02"
+    for start in range(0, len(packed), 255):
+        block = packed[start : start + 255]
+        out += bytes([len(block)]) + block
+    return out + b"\x00\x3b"
+
+
 def main():
     folder = Path(sys.argv[1])
     cloth = rows_of(CLOTH)
@@ -270,6 +294,16 @@ def main():
         "sinking.dtx": sinking_dtx(),
         "draft.wpo": draft_wpo(),
         "old.wpo": old_wpo(),
+        # White first in the palette: black is told by its colour, not by its index.
+        "weave.gif": gif(
+            [[int(cell == "#") for cell in row] for row in CLOTH.split()],
+            [(255, 255, 255), (0, 0, 0)],
+        ),
+        "flag.gif": gif(
+            [[min(2, (x + 2 * y) // 8) for x in range(13)] for y in range(11)],
+            [(200, 30, 40), (240, 240, 230), (20, 40, 160)],
+            interlaced=True,
+        ),
     }
     for name, content in files.items():
         (folder / name).write_bytes(content)
