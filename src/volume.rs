@@ -5,6 +5,8 @@
 //! largest, two components of the direction, optics), so that a short flight touches half
 //! a kilobyte; bricks without matter are not stored.
 
+pub mod source;
+
 use glam::{IVec3, Mat3, UVec3, Vec3};
 
 use crate::render::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
@@ -228,6 +230,20 @@ impl DenseGrid {
     /// What had to be mended on construction.
     pub fn mended(&self) -> Mended {
         self.mended
+    }
+
+    /// Every optics: those given, then an isotropic twin of each.
+    pub fn all_optics(&self) -> &[Optics] {
+        &self.optics
+    }
+
+    /// The largest extinction of any voxel, 1/mm.
+    pub fn densest(&self) -> f32 {
+        let largest = self
+            .scales
+            .iter()
+            .fold(0.0, |top: f32, &scale| top.max(scale));
+        largest * f32::from(u16::MAX)
     }
 
     /// The voxel of a cell, which must lie inside.

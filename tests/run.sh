@@ -72,7 +72,7 @@ prepare_system() {
     if have apt-get && have dpkg-query; then
         install mesa-vulkan-drivers libvulkan1 xvfb xauth libxkbcommon-x11-0 libxkbcommon0 \
             libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2 libwayland-client0 \
-            python3 python3-venv
+            python3 python3-venv python3-openvdb libopenvdb-tools libnanovdb-tools
         [[ $bench == no ]] || install libllvm15
     else
         say "   no apt-get here: taking what is installed"
@@ -121,6 +121,20 @@ prepare_peers() {
         tail -n 3 "$scratch/peers.log" 2>/dev/null || true
         lacks "mitsuba 3.5.2 (python3 -m venv $peers; $peers/bin/pip install mitsuba==3.5.2 numpy)"
     fi
+    # Readers of volumes and meshes; OpenVDB's own come with the system's Python.
+    local readers=(SimpleITK pynrrd tifffile trimesh)
+    local imports='import SimpleITK, nrrd, tifffile, trimesh, numpy'
+    if ! "$peers/bin/python" -c "$imports" >/dev/null 2>&1; then
+        "$peers/bin/python" -m pip install --quiet --disable-pip-version-check numpy \
+            "${readers[@]}" >>"$scratch/peers.log" 2>&1 || true
+    fi
+    if "$peers/bin/python" -c "$imports" >/dev/null 2>&1; then
+        export PICKGLASS_VOLUMES_PYTHON=$peers/bin/python
+    else
+        tail -n 3 "$scratch/peers.log" 2>/dev/null || true
+        lacks "readers of volumes ($peers/bin/pip install ${readers[*]})"
+    fi
+    have vdb_print || lacks "OpenVDB's readers (python3-openvdb libopenvdb-tools libnanovdb-tools)"
     local llvm
     for llvm in /usr/lib/x86_64-linux-gnu/libLLVM-15.so* /usr/lib/llvm-15/lib/libLLVM-15.so*; do
         if [[ -e $llvm ]]; then

@@ -11,6 +11,7 @@
 mod build;
 pub mod colour;
 pub mod expected;
+mod export;
 mod hair_cells;
 mod hairs;
 mod lookup;
@@ -18,5 +19,6 @@ mod walk;
 mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
+pub use export::{ClothWindow, Part, Region, WindowError};
 pub use hairs::{HairLayer, HairWalk};
 pub use walk::ClothWalk;

@@ -118,16 +118,23 @@ impl ClothVolume {
     /// Makes the crossings of a rectangle of cloth ready (mm), as far as they are not too
     /// many. Pictures are the same with or without it.
     pub fn with_window(mut self, x: Range<f32>, y: Range<f32>) -> Self {
-        self.window = self.window_over(x, y).into();
+        self.window = self.window_over(x, y, MARGIN, MOST_SHIFTS).into();
         self
     }
 
-    fn window_over(&self, x: Range<f32>, y: Range<f32>) -> Window {
+    /// As [`ClothVolume::with_window`] for a box of voxels that are looked up once: one
+    /// crossing more all round and little memory.
+    pub(super) fn with_small_window(mut self, x: Range<f32>, y: Range<f32>) -> Self {
+        self.window = self.window_over(x, y, 1, MOST_SHIFTS / 8).into();
+        self
+    }
+
+    fn window_over(&self, x: Range<f32>, y: Range<f32>, margin: i64, most_shifts: usize) -> Window {
         let first = |positions: &crate::design::Positions, range: &Range<f32>| {
             let [from, to] = [range.start, range.end].map(|mm| positions.locate(mm.into()).0);
             (
-                from - MARGIN,
-                (to - from).clamp(0, 1 << 20) as usize + 1 + 2 * MARGIN as usize,
+                from - margin,
+                (to - from).clamp(0, 1 << 20) as usize + 1 + 2 * margin as usize,
             )
         };
         let ((end, width), (pick, height)) = (first(&self.ends, &x), first(&self.picks, &y));
@@ -161,7 +168,7 @@ impl ClothVolume {
                 }
             };
         let bytes = 2 * bx * by * size_of::<StackShift>();
-        let all_kept = width * height * bytes <= MOST_SHIFTS;
+        let all_kept = width * height * bytes <= most_shifts;
         let kept = if all_kept { width * height } else { 0 };
         Window {
             end,

@@ -52,10 +52,72 @@ pub fn write_with(
 }
 
 fn put(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let folder = match path.parent() {
+    let mut pending = create(path)?;
+    {
+        let mut out = io::BufWriter::new(pending.as_file_mut());
+        fill(&mut out)?;
+        out.flush()?;
+    }
+    finish(pending, path)
+}
+
+/// A file that is being written and is nowhere until [`Pending::commit`]; dropping it
+/// leaves everything as it was.
+#[derive(Debug)]
+pub struct Pending {
+    file: tempfile::NamedTempFile,
+    path: PathBuf,
+}
+
+impl Pending {
+    /// Begins a file that shall stand at `path`.
+    ///
+    /// # Errors
+    /// [`WriteError`] where the folder cannot be written.
+    pub fn create(path: &Path) -> Result<Self, WriteError> {
+        let path = path.to_owned();
+        match create(&path) {
+            Ok(file) => Ok(Self { file, path }),
+            Err(source) => Err(WriteError { path, source }),
+        }
+    }
+
+    /// Where it shall stand.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The file, to be written anywhere in it.
+    pub fn file(&mut self) -> &mut std::fs::File {
+        self.file.as_file_mut()
+    }
+
+    /// What the system said, with the file's name.
+    pub fn failed(&self, source: io::Error) -> WriteError {
+        let path = self.path.clone();
+        WriteError { path, source }
+    }
+
+    /// Brings the file to the disk and puts it in its place.
+    ///
+    /// # Errors
+    /// [`WriteError`]; what was there before is then unchanged.
+    pub fn commit(self) -> Result<(), WriteError> {
+        let Self { file, path } = self;
+        finish(file, &path).map_err(|source| WriteError { path, source })
+    }
+}
+
+/// The folder that a file stands in.
+pub fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
-    };
+    }
+}
+
+fn create(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = folder_of(path);
     let mut options = tempfile::Builder::new();
     options.prefix(".pickglass-").suffix(".tmp");
     #[cfg(unix)]
@@ -64,22 +126,21 @@ fn put(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::
         use std::os::unix::fs::PermissionsExt;
         options.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = options.tempfile_in(folder)?;
+    let file = options.tempfile_in(folder)?;
     if let Ok(old) = std::fs::metadata(path)
         && old.is_file()
     {
         file.as_file().set_permissions(old.permissions())?;
     }
-    {
-        let mut out = io::BufWriter::new(file.as_file_mut());
-        fill(&mut out)?;
-        out.flush()?;
-    }
+    Ok(file)
+}
+
+fn finish(file: tempfile::NamedTempFile, path: &Path) -> io::Result<()> {
     file.as_file().sync_all()?;
     file.persist(path).map_err(|failed| failed.error)?;
     // The rename itself lasts once the folder is on the disk; not every system can do it.
     #[cfg(unix)]
-    if let Ok(folder) = std::fs::File::open(folder) {
+    if let Ok(folder) = std::fs::File::open(folder_of(path)) {
         let _ = folder.sync_all();
     }
     Ok(())

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, Layer,
-    LayerAttributes, LineOrder, ReadChannels, ReadLayers, WritableImage,
+    LayerAttributes, LineOrder, ReadChannels, ReadLayers, SpecificChannels, WritableImage,
 };
 use glam::Vec3;
 
@@ -92,6 +92,31 @@ pub fn encode(
     image.attributes = ImageAttributes::with_size(size);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+/// Encodes a linear RGB picture of `width`×`height` pixels, top row first, into the bytes
+/// of an EXR file.
+///
+/// # Errors
+/// When the codec refuses.
+pub fn encode_rgb(
+    width: usize,
+    height: usize,
+    pixel: impl Fn(usize, usize) -> Vec3 + Sync,
+) -> Result<Vec<u8>, ExrError> {
+    let channels = SpecificChannels::rgb(|at: exr::math::Vec2<usize>| {
+        let Vec3 { x, y, z } = pixel(at.x(), at.y());
+        (x, y, z)
+    });
+    let layer = Layer::new(
+        (width, height),
+        LayerAttributes::named("sky"),
+        Encoding::SMALL_LOSSLESS,
+        channels,
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
     Ok(bytes.into_inner())
 }
 

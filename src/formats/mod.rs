@@ -4,8 +4,9 @@
 //! name; [`save`] writes one by the ending of its name and says what the format has no
 //! place for. `ron` is the design document, `wif` the weavers' interchange format, `dtx`,
 //! `wpo` and `dbw` the files of drafting programs, `jc5` those of jacquard looms, `image`
-//! all kinds of images, `photo` any picture that is to be posterised; `sheet` is what drafts have in common. `atomic` writes files so that
-//! nothing is ever half-written.
+//! all kinds of images, `photo` any picture that is to be posterised; `sheet` is what
+//! drafts have in common. `volume` takes cloth out as voxels and reads them in, `yarns` takes
+//! it out as curves and tubes. `atomic` writes files so that nothing is ever half-written.
 
 pub mod atomic;
 pub mod dbw;
@@ -18,8 +19,10 @@ pub mod png;
 pub mod presets;
 pub mod ron;
 mod sheet;
+pub mod volume;
 pub mod wif;
 pub mod wpo;
+pub mod yarns;
 
 pub use sheet::{Place, SheetError};
 

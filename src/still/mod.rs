@@ -3,14 +3,17 @@
 //! [`prepare`] makes the cloth (exemplars, synthesis, colours), [`render()`] traces it pass
 //! by pass and calls back after each, and [`Still::save`] writes the result. Both the
 //! command line and the window are consumers of the same passes. [`render_sheet`] puts all
-//! colourways of a design side by side, the cloth made once wherever their yarns allow.
+//! colourways of a design side by side, the cloth made once wherever their yarns allow;
+//! [`render_grid`] takes a picture of a volume that was read.
 
 mod effects;
+mod grid;
 mod picture;
 mod request;
 mod sheet;
 
 pub use effects::{DIALS, DialError, EFFECTS};
+pub use grid::{render_grid, scene_files};
 pub use picture::{Pass, PreparedCloth, Still, prepare, render, render_still, usual_width_mm};
 pub use request::{EffectBase, EffectChoice, LightChoice, StillReport, StillRequest, Stop};
 pub use sheet::{AS_DESIGNED, Sheet, SheetPlace, render_sheet};
@@ -22,6 +25,7 @@ use crate::design::ColourwayError;
 use crate::exemplar::ExemplarError;
 use crate::formats::exr::ExrError;
 use crate::formats::png::PngError;
+use crate::formats::volume::VolumeFileError;
 use crate::job::Cancelled;
 use crate::render::LightError;
 
@@ -55,6 +59,9 @@ pub enum StillError {
     /// A sheet of colourways in a format that cannot hold it.
     #[error("{}: a sheet of colourways is written as .png; end the name in that", .0.display())]
     SheetEnding(PathBuf),
+    /// The volume could not be read.
+    #[error(transparent)]
+    Volume(VolumeFileError),
     /// The picture could not be written.
     #[error(transparent)]
     Png(#[from] PngError),
@@ -66,6 +73,15 @@ pub enum StillError {
 impl From<Cancelled> for StillError {
     fn from(cancelled: Cancelled) -> Self {
         Self::Cancelled(cancelled)
+    }
+}
+
+impl From<VolumeFileError> for StillError {
+    fn from(error: VolumeFileError) -> Self {
+        match error {
+            VolumeFileError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Volume(other),
+        }
     }
 }
 

@@ -13,7 +13,10 @@ use crate::design::{Design, Yarn};
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::render::{self, Both, Camera, Denoise, Film, LightRig, RenderSettings, Tone, View};
+use crate::render::{
+    self, Both, Camera, Denoise, Film, LightRig, RenderOutcome, RenderSettings, Scatterer, Tone,
+    View,
+};
 use crate::synthesis::Catalogue;
 use crate::yarn::YarnRecipe;
 
@@ -109,10 +112,10 @@ pub struct Pass<'p> {
 }
 
 /// Effects by name, and whether they are simulated.
-type SwitchedEffects = Vec<(String, bool)>;
+pub(super) type SwitchedEffects = Vec<(String, bool)>;
 
 /// The settings that a request makes of the defaults.
-fn settings(
+pub(super) fn settings(
     request: &StillRequest,
 ) -> Result<(ClothSettings, RenderSettings, SwitchedEffects), StillError> {
     let mut cloth = ClothSettings::default();
@@ -177,7 +180,7 @@ pub fn prepare(
     })
 }
 
-fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
+pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
     let rig = match choice {
         LightChoice::Preset(name) => LightRig::preset(name)?,
         LightChoice::Environment(path) => {
@@ -192,26 +195,33 @@ fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
 }
 
 fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
+    let [x, y] = [
+        design.end_positions().repeat_mm(),
+        design.pick_positions().repeat_mm(),
+    ]
+    .map(|repeat| 0.5 * repeat as f32);
+    let usual = usual_width_mm(request.view, design);
+    camera_at(request, Vec3::new(x, y, 0.0), usual)
+}
+
+/// The camera of a request that looks at `middle` and shows `usual` mm where the request
+/// does not say.
+pub(super) fn camera_at(
+    request: &StillRequest,
+    middle: Vec3,
+    usual: f32,
+) -> Result<Camera, StillError> {
     let (width, height) = (request.width, request.height);
     if !(1..=16_384).contains(&width) || !(1..=16_384).contains(&height) {
         return Err(StillError::Size(width, height));
     }
-    let width_mm = request
-        .width_mm
-        .unwrap_or_else(|| usual_width_mm(request.view, design));
+    let width_mm = request.width_mm.unwrap_or(usual);
     if !(0.01..=10_000.0).contains(&width_mm) {
         return Err(StillError::Width(width_mm));
     }
-    let [x, y] = request.centre_mm.unwrap_or_else(|| {
-        [
-            design.end_positions().repeat_mm(),
-            design.pick_positions().repeat_mm(),
-        ]
-        .map(|repeat| 0.5 * repeat as f32)
-    });
-    Ok(request
-        .view
-        .camera(Vec3::new(x, y, 0.0), width_mm, width, height))
+    let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
+    let target = Vec3::new(x, y, middle.z);
+    Ok(request.view.camera(target, width_mm, width, height))
 }
 
 /// Renders one picture; `on_pass` sees it after every pass.
@@ -225,96 +235,144 @@ pub fn render(
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<Still, StillError> {
     let (_, settings, _) = settings(request)?;
-    let camera = camera(&prepared.design, request)?;
-    let lights = lights(&request.light, request.view)?;
-    let tone = Tone {
-        exposure: request.exposure_ev,
+    let shot = Shot {
+        camera: camera(&prepared.design, request)?,
+        lights: lights(&request.light, request.view)?,
+        settings,
+        request,
     };
-    let job = match request
-        .stop
-        .seconds
-        .and_then(|s| Duration::try_from_secs_f64(s).ok())
-    {
-        Some(time) => job.clone().with_deadline(Instant::now() + time),
-        None => job.clone(),
-    };
-    let denoise = effects::denoises(&request.dials);
-    // A preview is denoised only as often as that takes a small part of the time.
-    let mut denoised: Option<(Instant, Duration)> = None;
-    let mut show = |film: &Film, progress: &render::Progress| {
-        let due = denoised.is_none_or(|(when, cost)| when.elapsed() > 4 * cost);
-        if denoise && !due && progress.spp < settings.spp {
-            return;
-        }
-        let picture = if denoise {
-            let begun = Instant::now();
-            let picture = tone.picture_of(film, &Denoise::default().apply(film));
-            denoised = Some((Instant::now(), begun.elapsed()));
-            picture
-        } else {
-            tone.picture(film)
-        };
-        let rgba: Vec<u8> = picture
-            .pixels
-            .iter()
-            .flat_map(|pixel| pixel.map(byte))
-            .collect();
-        on_pass(&Pass {
-            width: picture.width,
-            height: picture.height,
-            rgba: &rgba,
-            spp: progress.spp,
-            seconds: progress.seconds,
-            error: known(progress.error.error),
-        });
-    };
-    let (x, y) = in_view(&camera, request.view);
+    let (x, y) = in_view(&shot.camera, request.view);
     let cloth = prepared.cloth.clone().with_window(x, y);
     let hairs = prepared
         .on("hairs")
         .then(|| HairLayer::new(&cloth, prepared.hairy()))
         .flatten();
     let outcome = match &hairs {
-        Some(hairs) => {
-            let both = Both(&cloth, hairs);
-            render::render(&both, &camera, &lights, &settings, &job, &mut show)?
+        Some(hairs) => shot.expose(&Both(&cloth, hairs), job, on_pass)?,
+        None => shot.expose(&cloth, job, on_pass)?,
+    };
+    Ok(shot.develop(
+        outcome,
+        prepared.seconds.clone(),
+        prepared.effects.clone(),
+        (prepared.design.name.clone(), design_hash(&prepared.design)),
+    ))
+}
+
+/// A picture about to be taken.
+pub(super) struct Shot<'r> {
+    pub camera: Camera,
+    pub lights: LightRig,
+    pub settings: RenderSettings,
+    pub request: &'r StillRequest,
+}
+
+impl Shot<'_> {
+    /// Traces anything; `on_pass` sees the picture after every pass.
+    pub fn expose<S: Scatterer>(
+        &self,
+        scatterer: &S,
+        job: &Job,
+        on_pass: &mut dyn FnMut(&Pass<'_>),
+    ) -> Result<RenderOutcome, StillError> {
+        let Self {
+            camera,
+            lights,
+            settings,
+            request,
+        } = self;
+        let tone = self.tone();
+        let job = match request
+            .stop
+            .seconds
+            .and_then(|s| Duration::try_from_secs_f64(s).ok())
+        {
+            Some(time) => job.clone().with_deadline(Instant::now() + time),
+            None => job.clone(),
+        };
+        let denoise = effects::denoises(&request.dials);
+        // A preview is denoised only as often as that takes a small part of the time.
+        let mut denoised: Option<(Instant, Duration)> = None;
+        let mut show = |film: &Film, progress: &render::Progress| {
+            let due = denoised.is_none_or(|(when, cost)| when.elapsed() > 4 * cost);
+            if denoise && !due && progress.spp < settings.spp {
+                return;
+            }
+            let picture = if denoise {
+                let begun = Instant::now();
+                let picture = tone.picture_of(film, &Denoise::default().apply(film));
+                denoised = Some((Instant::now(), begun.elapsed()));
+                picture
+            } else {
+                tone.picture(film)
+            };
+            let rgba: Vec<u8> = picture
+                .pixels
+                .iter()
+                .flat_map(|pixel| pixel.map(byte))
+                .collect();
+            on_pass(&Pass {
+                width: picture.width,
+                height: picture.height,
+                rgba: &rgba,
+                spp: progress.spp,
+                seconds: progress.seconds,
+                error: known(progress.error.error),
+            });
+        };
+        let outcome = render::render(scatterer, camera, lights, settings, &job, &mut show)?;
+        Ok(outcome)
+    }
+
+    fn tone(&self) -> Tone {
+        Tone {
+            exposure: self.request.exposure_ev,
         }
-        None => render::render(&cloth, &camera, &lights, &settings, &job, &mut show)?,
-    };
-    let mut seconds = prepared.seconds.clone();
-    seconds.push(("render".to_owned(), outcome.seconds));
-    let report = StillReport {
-        renderer: "cpu".to_owned(),
-        width: request.width,
-        height: request.height,
-        spp: outcome.spp,
-        total_seconds: seconds.iter().map(|stage| stage.1).sum(),
-        seconds,
-        paths_per_second: outcome.paths_per_second,
-        error: known(outcome.error.error),
-        error_interval: known(outcome.error.error).map(|_| [outcome.error.low, outcome.error.high]),
-        invalid_samples: outcome.counters.invalid_samples,
-        majorant_violations: outcome.counters.majorant_violations,
-        effects: prepared.effects.clone(),
-    };
-    let texts = vec![
-        (
-            "Software".to_owned(),
-            format!("Pickglass {}", env!("CARGO_PKG_VERSION")),
-        ),
-        ("Title".to_owned(), prepared.design.name.clone()),
-        ("Design".to_owned(), design_hash(&prepared.design)),
-        ("Settings".to_owned(), format!("{request:?}")),
-    ];
-    Ok(Still {
-        report,
-        film: outcome.film,
-        tone,
-        denoise,
-        depth: effects::png_depth(&request.dials),
-        pixels_per_mm: camera.pixels_per_mm(),
-        texts,
-    })
+    }
+
+    /// The still of a film: `seconds` before rendering, and the title and hash of what it
+    /// shows.
+    pub fn develop(
+        &self,
+        outcome: RenderOutcome,
+        mut seconds: Vec<(String, f64)>,
+        effects: SwitchedEffects,
+        (title, hash): (String, String),
+    ) -> Still {
+        let request = self.request;
+        seconds.push(("render".to_owned(), outcome.seconds));
+        let report = StillReport {
+            renderer: "cpu".to_owned(),
+            width: request.width,
+            height: request.height,
+            spp: outcome.spp,
+            total_seconds: seconds.iter().map(|stage| stage.1).sum(),
+            seconds,
+            paths_per_second: outcome.paths_per_second,
+            error: known(outcome.error.error),
+            error_interval: known(outcome.error.error)
+                .map(|_| [outcome.error.low, outcome.error.high]),
+            invalid_samples: outcome.counters.invalid_samples,
+            majorant_violations: outcome.counters.majorant_violations,
+            effects,
+        };
+        let software = format!("Pickglass {}", env!("CARGO_PKG_VERSION"));
+        let texts = [
+            ("Software", software),
+            ("Title", title),
+            ("Design", hash),
+            ("Settings", format!("{request:?}")),
+        ];
+        Still {
+            report,
+            film: outcome.film,
+            tone: self.tone(),
+            denoise: effects::denoises(&request.dials),
+            depth: effects::png_depth(&request.dials),
+            pixels_per_mm: self.camera.pixels_per_mm(),
+            texts: texts.map(|(key, text)| (key.to_owned(), text)).to_vec(),
+        }
+    }
 }
 
 /// The stretch of cloth that a camera sees most of, mm in x and y.

@@ -13,6 +13,7 @@ pub mod fibre;
 mod geometry;
 mod noise;
 mod recipe;
+pub mod tubes;
 
 pub use geometry::{Direction, WeaveGeometry, YarnPath};
 pub use noise::{hash, unit};

@@ -1,10 +1,12 @@
 """Renders the grids that the tests write with mitsuba 3.5.2 and compares.
 
 usage: mitsuba.py compare FOLDER NAME [CONTROL ...]
+       mitsuba.py scene FOLDER SCENE.xml NAME [CONTROL ...]
        mitsuba.py bench FOLDER VARIANT SPP
 
 compare: exit 0 when the film NAME agrees with mitsuba in the mean and over blocks of
 pixels, and every CONTROL (a film of a perturbed grid) does not; 1 otherwise.
+scene: as compare, with a scene as it was exported.
 bench: prints seconds and mean squared relative error against FOLDER/reference-mean.f32.
 
 Versions after 3.5.2 sample SGGX wrongly for oblique directions.
@@ -121,12 +123,18 @@ def agrees(folder, name, view, repeats):
     return ok
 
 
-def compare(folder, name, controls):
+def load_xml(folder, xml, mi):
+    scene = mi.load_file(str(folder / xml), spp="1")
+    width, height = scene.sensors()[0].film().size()
+    return scene, {"width": int(width), "height": int(height)}
+
+
+def compare(folder, name, controls, xml=None):
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
     begun = time.time()
-    scene, view = load(folder, mi)
+    scene, view = load(folder, mi) if xml is None else load_xml(folder, xml, mi)
     repeats = []
     for seed in range(REPEATS):
         image = np.array(mi.render(scene, seed=seed, spp=SPP))
@@ -176,6 +184,8 @@ def bench(folder, variant, spp):
 if __name__ == "__main__":
     if len(sys.argv) >= 4 and sys.argv[1] == "compare":
         sys.exit(compare(Path(sys.argv[2]), sys.argv[3], sys.argv[4:]))
+    if len(sys.argv) >= 5 and sys.argv[1] == "scene":
+        sys.exit(compare(Path(sys.argv[2]), sys.argv[4], sys.argv[5:], sys.argv[3]))
     if len(sys.argv) == 5 and sys.argv[1] == "bench":
         sys.exit(bench(Path(sys.argv[2]), sys.argv[3], int(sys.argv[4])))
     print(__doc__, file=sys.stderr)

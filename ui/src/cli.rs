@@ -6,7 +6,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use pickglass::design::{Family, Srgb};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
-use crate::values::{self, Dial, PicturePath, SettArg, Size};
+use crate::values::{self, Dial, PicturePath, SettArg, Size, VolumePath};
+use pickglass::cloth::Region;
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::still::{EffectChoice, LightChoice};
 
@@ -51,6 +52,8 @@ pub enum Command {
     Still(Box<StillArgs>),
     /// The weave library: names, repeats and what they are for
     Weaves(WeavesArgs),
+    /// Write a window of the cloth as voxels, or its yarns as geometry
+    Volume(Box<VolumeArgs>),
 }
 
 #[derive(Debug, Args)]
@@ -273,7 +276,8 @@ pub enum RendererArg {
 #[derive(Debug, Args)]
 #[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
 pub struct StillArgs {
-    /// A design (.ron), a draft, loom or image file, or a preset's name
+    /// A design (.ron), a draft, loom or image file, a preset's name or a volume (.vol, .nrrd,
+    /// .mhd)
     pub design: String,
     /// The picture to write, .png or .exr
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
@@ -320,6 +324,43 @@ pub struct StillArgs {
     /// Set one dial of one approximation, e.g. rank=15; may be repeated
     #[arg(long = "set", value_name = "dial=value", value_parser = values::dial)]
     pub dials: Vec<Dial>,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct VolumeArgs {
+    /// A design (.ron), a draft (.wif) or a preset's name
+    pub design: String,
+    /// The file to write: voxels as .vol, .vdb, .nrrd, .mhd or .tif, yarns as .obj or .glb
+    #[arg(short, long, value_name = "OUT", value_parser = values::volume_path)]
+    pub output: VolumePath,
+    /// First end, first pick, ends and picks [default: one repeat]
+    #[arg(long, value_name = "x,y,w,h", allow_hyphen_values = true, value_parser = values::region)]
+    pub region: Option<Region>,
+    /// Voxels along a crossing's shorter side [default: as fine as the cloth's own]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub voxels_per_crossing: Option<u32>,
+    /// Voxel level of the cloth: each halves the resolution
+    #[arg(long, value_name = "L", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=4))]
+    pub level: u32,
+    /// Only what lies above the mid plane
+    #[arg(long)]
+    pub face: bool,
+    /// Where the eye is in the scene beside a .vol
+    #[arg(long, default_value = "face", value_parser = values::view())]
+    pub view: View,
+    /// The light of that scene: a name, or an equirectangular environment (.exr)
+    #[arg(long, value_name = "PRESET|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
+    pub light: LightChoice,
+    /// Seed of the patch shifts
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
     #[command(flatten)]
     pub sett: SettArgs,
     #[command(flatten)]

@@ -3,6 +3,9 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use pickglass::cloth::Region;
+use pickglass::formats::volume::VolumeFormat;
+use pickglass::formats::yarns;
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
@@ -25,6 +28,10 @@ pub struct Size {
 /// A picture's file; the ending is known to be one that can be written.
 #[derive(Debug, Clone)]
 pub struct PicturePath(pub PathBuf);
+
+/// A volume's file; the ending is known to be one that can be written.
+#[derive(Debug, Clone)]
+pub struct VolumePath(pub PathBuf);
 
 /// One dial of one approximation, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -117,6 +124,37 @@ pub fn picture_path(text: &str) -> Result<PicturePath, String> {
         Some("png" | "exr") => Ok(PicturePath(path)),
         _ => Err("expected a file that ends in .png or .exr".to_owned()),
     }
+}
+
+/// The path of voxels or of yarns.
+pub fn volume_path(text: &str) -> Result<VolumePath, String> {
+    let path = PathBuf::from(text);
+    if VolumeFormat::of(&path).is_some() || yarns::is_yarns(&path) {
+        return Ok(VolumePath(path));
+    }
+    Err("expected a file that ends in .vol, .vdb, .nrrd, .mhd, .tif, .obj or .glb".to_owned())
+}
+
+/// `x,y,w,h`: first end, first pick, ends, picks.
+pub fn region(text: &str) -> Result<Region, String> {
+    let wrong = || "expected first end, first pick, ends and picks, as 0,0,8,8".to_owned();
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let [x, y, w, h] = parts[..] else {
+        return Err(wrong());
+    };
+    let first = |part: &str| part.parse::<i64>().map_err(|_| wrong());
+    let count = |part: &str| {
+        part.parse::<u32>()
+            .ok()
+            .filter(|&n| n > 0)
+            .ok_or_else(wrong)
+    };
+    Ok(Region {
+        end: first(x)?,
+        pick: first(y)?,
+        ends: count(w)?,
+        picks: count(h)?,
+    })
 }
 
 /// A light's name, or the path of an environment image.
@@ -263,6 +301,26 @@ mod tests {
         assert_eq!(size("8x9").map(|s| s.width * s.height), Ok(72));
         for wrong in ["8", "0x8", "8x-1", "99999x1", "x"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_region_is_four_numbers() {
+        let region = region("-3, 4,5,6").expect("right");
+        assert_eq!(
+            (region.end, region.pick, region.ends, region.picks),
+            (-3, 4, 5, 6)
+        );
+        for wrong in [
+            "",
+            "1,2,3",
+            "0,0,0,1",
+            "0,0,1,-1",
+            "0,0,1,1,1",
+            "a,0,1,1",
+            "0,0,9e9,1",
+        ] {
+            assert!(super::region(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -6,6 +6,7 @@ mod convert;
 mod posterize;
 mod still;
 mod synthesize;
+mod volume;
 mod weaves;
 mod window;
 
@@ -26,6 +27,7 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
         Some(Command::Synthesize(args)) => synthesize::run(&args),
         Some(Command::Still(args)) => still::run(&args),
         Some(Command::Weaves(args)) => weaves::run(&args),
+        Some(Command::Volume(args)) => volume::run(&args),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::cli::{RendererArg, StillArgs};
 use crate::opened::Opened;
 use crate::out::{self, Progress};
 use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::volume::VolumeFormat;
 use pickglass::still::{self, Pass, StillReport, StillRequest, Stop};
 
 /// Paths per pixel when no way to stop is given.
@@ -21,6 +22,14 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     refuse_absent_renderers(args.renderer)?;
     let path = &args.output.0;
     check_output(path)?;
+    let argument = Path::new(&args.design);
+    if VolumeFormat::of(argument).is_some() {
+        let report = render_volume(argument, &request(args), path)?;
+        if args.json {
+            return out::say_json(&report_json(&report));
+        }
+        return out::say(&describe(&report, path));
+    }
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
@@ -76,15 +85,36 @@ pub fn render_to(
 ) -> anyhow::Result<StillReport> {
     let progress = Progress::new();
     let still = still::render_still(&opened.design, request, &progress.job(), &mut |pass| {
-        let error = pass.error.map_or_else(String::new, |error| {
-            format!(" · error {:.1} %", error * 100.0)
-        });
-        progress.show(&format!("{} spp · {:.1} s{error}", pass.spp, pass.seconds));
+        show_pass(&progress, pass);
     });
     progress.finish();
     let still = still?;
     still.save(path)?;
     Ok(still.report)
+}
+
+/// Renders a volume's file into a picture's.
+fn render_volume(
+    volume: &Path,
+    request: &StillRequest,
+    path: &Path,
+) -> anyhow::Result<StillReport> {
+    let progress = Progress::new();
+    let still = still::render_grid(volume, request, &progress.job(), &mut |pass| {
+        show_pass(&progress, pass);
+    });
+    progress.finish();
+    let (still, warnings) = still?;
+    note_warnings(&warnings);
+    still.save(path)?;
+    Ok(still.report)
+}
+
+fn show_pass(progress: &Progress, pass: &still::Pass) {
+    let error = pass.error.map_or_else(String::new, |error| {
+        format!(" · error {:.1} %", error * 100.0)
+    });
+    progress.show(&format!("{} spp · {:.1} s{error}", pass.spp, pass.seconds));
 }
 
 /// The picture's line for a person.

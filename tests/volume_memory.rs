@@ -1,0 +1,57 @@
+//! Writing takes memory for a box of voxels, whatever the window.
+//!
+//! One test in a process of its own, since peak memory is the process's.
+
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod volume_sources;
+
+use glam::UVec3;
+use pickglass::formats::volume;
+use pickglass::job::Job;
+use volume_sources::Rule;
+
+/// Peak resident memory since the last reset in bytes; `None` where the system cannot say.
+fn peak() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+/// Sets the peak back to what is resident now, and gives that.
+fn reset_peak() -> Option<u64> {
+    std::fs::write("/proc/self/clear_refs", "5").ok()?;
+    peak()
+}
+
+#[test]
+fn memory_does_not_grow_with_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    for ending in ["vol", "vdb", "tif"] {
+        let mut peaks = Vec::new();
+        for size in [UVec3::new(256, 256, 64), UVec3::new(768, 384, 64)] {
+            let path = folder.path().join(format!("cloth.{ending}"));
+            let Some(before) = reset_peak() else {
+                println!("not run: this system does not say how much memory is in use");
+                return;
+            };
+            let written = volume::write(&Rule::new(size), &path, &[], &Job::new()).unwrap();
+            let grown = peak().unwrap().saturating_sub(before);
+            println!(
+                "{ending}: {} bytes on disk, {grown} more in memory",
+                written.bytes
+            );
+            peaks.push((written.bytes, grown));
+        }
+        let [(small, _), (large, grown)] = peaks[..] else {
+            panic!("two sizes")
+        };
+        assert!(large > 4 * small);
+        assert!(grown < 180 << 20, "{ending}: {grown} bytes for {large}");
+        if ending == "vol" {
+            // Holding the voxels or the files would have been seen.
+            assert!(large > 2 * grown, "{ending}: {grown} bytes for {large}");
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! `pickglass volume`: a window of the cloth as voxels, or its yarns as geometry.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use pickglass::cloth::{ClothWindow, Part, Region};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::volume::{self, Plan, VolumeFormat, bytes_in_words};
+use pickglass::formats::yarns;
+use pickglass::still::{self, StillRequest};
+use pickglass::volume::source::{Frame, VoxelSource};
+use pickglass::yarn::tubes;
+use serde_json::{Value, json};
+
+use super::{check_output, note_warnings};
+use crate::cli::VolumeArgs;
+use crate::opened::Opened;
+use crate::out::{self, Progress};
+
+/// Pixels across the picture of a scene for another renderer.
+const SCENE_WIDTH: u32 = 1280;
+
+pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
+    let path = &args.output.0;
+    check_output(path)?;
+    let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
+    note_warnings(&opened.warnings);
+    let region = region(args, &opened);
+    if yarns::is_yarns(path) {
+        return run_yarns(args, &opened, region);
+    }
+    let request = StillRequest {
+        view: args.view,
+        light: args.light.clone(),
+        seed: args.seed,
+        dials: vec![("level".to_owned(), args.level.to_string())],
+        ..StillRequest::default()
+    };
+    let progress = Progress::new();
+    let job = progress.job();
+    let prepared = still::prepare(&opened.design, &request, &ExemplarStore::user(), &job);
+    progress.finish();
+    let prepared = prepared?;
+    let part = if args.face { Part::Face } else { Part::Whole };
+    let window = ClothWindow::new(prepared.cloth(), region, part, args.voxels_per_crossing)?;
+    let frame = window.frame();
+    let attached = if VolumeFormat::of(path) == Some(VolumeFormat::Vol) {
+        still::scene_files(path, &frame, &framed(request, &frame))?
+    } else {
+        Vec::new()
+    };
+    let plan = volume::plan(&window, path, &attached)?;
+    out::note(&announcement(&plan, &frame));
+    let begun = Instant::now();
+    let written = volume::write(&window, path, &attached, &job);
+    progress.finish();
+    let written = written?;
+    let seconds = begun.elapsed().as_secs_f64();
+    if args.json {
+        return out::say_json(&json!({
+            "voxels": written.voxels,
+            "bytes": written.bytes,
+            "files": names(&written.files),
+            "size": frame.size.to_array(),
+            "voxel_mm": frame.edge_mm,
+            "origin_mm": frame.origin_mm.to_array(),
+            "planned": { "bytes": plan.bytes(), "exact": plan.exact, "seconds": plan.seconds },
+            "seconds": seconds,
+        }));
+    }
+    out::say(&wrote(&written.files, written.bytes, seconds))
+}
+
+/// The rectangle asked for, or one repeat of the weave.
+fn region(args: &VolumeArgs, opened: &Opened) -> Region {
+    args.region.unwrap_or(Region {
+        end: 0,
+        pick: 0,
+        ends: opened.design.ends(),
+        picks: opened.design.picks(),
+    })
+}
+
+/// The request with a picture of the window's own shape.
+fn framed(request: StillRequest, frame: &Frame) -> StillRequest {
+    let shape = f64::from(frame.size.y) / f64::from(frame.size.x);
+    let height = (f64::from(SCENE_WIDTH) * shape)
+        .round()
+        .clamp(1.0, 16_384.0);
+    StillRequest {
+        width: SCENE_WIDTH,
+        height: height as u32,
+        ..request
+    }
+}
+
+fn announcement(plan: &Plan, frame: &Frame) -> String {
+    let [x, y, z] = frame.size.to_array();
+    let about = if plan.exact { "" } else { "about " };
+    format!(
+        "{about}{} in {} file{}: {x} x {y} x {z} voxels of {:.2} µm, about {:.1} s",
+        bytes_in_words(plan.bytes()),
+        plan.files.len(),
+        if plan.files.len() == 1 { "" } else { "s" },
+        frame.edge_mm * 1e3,
+        plan.seconds,
+    )
+}
+
+fn wrote(files: &[PathBuf], bytes: u64, seconds: f64) -> String {
+    let list: Vec<String> = files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    format!(
+        "wrote {} ({}, {seconds:.1} s)",
+        list.join(", "),
+        bytes_in_words(bytes)
+    )
+}
+
+fn names(files: &[PathBuf]) -> Vec<Value> {
+    files
+        .iter()
+        .map(|file| Value::from(file.display().to_string()))
+        .collect()
+}
+
+fn run_yarns(args: &VolumeArgs, opened: &Opened, region: Region) -> anyhow::Result<()> {
+    let path = &args.output.0;
+    let last = |first: i64, count: u32| first.saturating_add(i64::from(count));
+    let tubes = tubes::tubes(
+        &opened.design,
+        region.end..last(region.end, region.ends),
+        region.pick..last(region.pick, region.picks),
+    )?;
+    let progress = Progress::new();
+    let begun = Instant::now();
+    let written = yarns::write(&opened.design, &tubes, path, &progress.job());
+    progress.finish();
+    let written = written?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let bytes: u64 = written.iter().map(|file| file.1).sum();
+    let files: Vec<PathBuf> = written.into_iter().map(|file| file.0).collect();
+    if args.json {
+        return out::say_json(&json!({
+            "voxels": 0,
+            "yarns": tubes.len(),
+            "bytes": bytes,
+            "files": names(&files),
+            "seconds": seconds,
+        }));
+    }
+    out::say(&wrote(&files, bytes, seconds))
+}
