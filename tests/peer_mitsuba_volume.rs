@@ -48,7 +48,7 @@ fn mitsuba_renders_the_exported_scene_alike() {
         let lights = LightRig::preset("day").expect("a preset");
         let bounds = window.frame().bounds();
         let middle = (bounds.min + bounds.max) * 0.5;
-        let camera = view.camera(middle, bounds.max.x - bounds.min.x, 30, 20);
+        let camera = view.camera(middle, bounds.max.x - bounds.min.x, 18, 12);
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("cloth.vol");
         let frame = window.frame();

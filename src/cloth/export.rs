@@ -34,6 +34,18 @@ pub struct Region {
     pub picks: u32,
 }
 
+impl std::fmt::Display for Region {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let Self {
+            end,
+            pick,
+            ends,
+            picks,
+        } = self;
+        write!(f, "{end},{pick},{ends},{picks}")
+    }
+}
+
 /// How much of the thickness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Part {
@@ -48,10 +60,10 @@ pub enum Part {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WindowError {
     /// A rectangle without crossings.
-    #[error("region {0:?}: give at least one end and one pick, as 0,0,8,8")]
+    #[error("region {0}: give at least one end and one pick, as 0,0,8,8")]
     Empty(Region),
     /// A rectangle too far from the cloth's origin or too long.
-    #[error("region {0:?} reaches too far: keep ends and picks within ±1000000000")]
+    #[error("region {0} reaches too far: keep ends and picks within ±1000000000")]
     Far(Region),
     /// Voxels that are no size.
     #[error("{0} voxels a crossing: give 1 to 1024")]

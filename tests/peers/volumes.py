@@ -108,9 +108,8 @@ def read_openvdb(path, truth):
 
     def one(name, of, components=1, background=0):
         grid = vdb.read(str(path), name)
-        kind = np.int32 if name == "yarn" else np.float32
         shape = (nx, ny, nz) + ((components,) if components > 1 else ())
-        numbers = np.full(shape, background, kind)
+        numbers = np.full(shape, background, np.float32)
         grid.copyToArray(numbers)
         axes = (2, 1, 0, 3) if components > 1 else (2, 1, 0)
         wanted = truth(of, components).copy()

@@ -425,6 +425,28 @@ mod tests {
     }
 
     #[test]
+    fn a_volume_takes_every_flag() {
+        let line = "pickglass volume twill -o a.vdb --region -2,3,4,5 --voxels-per-crossing 16 \
+                    --level 1 --face --view oblique --light sun --seed 3 --sett 24 --json";
+        let cli = Cli::try_parse_from(line.split_whitespace()).expect("a right command line");
+        let Some(Command::Volume(volume)) = cli.command else {
+            panic!("not a volume")
+        };
+        assert_eq!(volume.region.map(|region| region.end), Some(-2));
+        assert_eq!((volume.voxels_per_crossing, volume.level), (Some(16), 1));
+        for wrong in [
+            "-o a.xyz",
+            "-o a.vol --region 0,0,0,1",
+            "-o a.vol --voxels-per-crossing 0",
+            "-o a.vol --level 5",
+        ] {
+            let line = format!("pickglass volume twill {wrong}");
+            let error = Cli::try_parse_from(line.split_whitespace()).expect_err("wrong usage");
+            assert_eq!(error.exit_code(), 2, "{wrong}");
+        }
+    }
+
+    #[test]
     fn two_ways_to_stop_are_wrong_usage() {
         let line = "pickglass still twill -o a.png --spp 4 --seconds 2";
         let error = Cli::try_parse_from(line.split_whitespace()).expect_err("exclusive");

@@ -139,10 +139,11 @@ fn xml(vol: &str, sky: &str, frame: &Frame, scene: &Scene, around: &Surroundings
                 );
             }
             Surroundings::Picture { .. } => {
+                // A ray straight down would wrap round to the zenith: the sky leans a little.
                 let _ = writeln!(
                     text,
                     "  <emitter type=\"envmap\">\n    <string name=\"filename\" value=\"{}\"/>\n    \
-                     <transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/></transform>\n  \
+                     <transform name=\"to_world\"><rotate x=\"1\" angle=\"90.05\"/></transform>\n  \
                      </emitter>",
                     escaped(sky)
                 );

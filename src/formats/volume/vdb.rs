@@ -1,6 +1,6 @@
 //! OpenVDB, file version 224 without compression: grids `density` (float, fog volume),
-//! `direction` and `albedo` (vec3s), `roughness` (float) and `yarn` (int32), all with the
-//! same active voxels, in millimetres: OpenVDB takes a voxel of less than 14.4 µm in metres
+//! `direction` and `albedo` (vec3s), `roughness` and `yarn` (float), all with the same
+//! active voxels, in millimetres: OpenVDB takes a voxel of less than 14.4 µm in metres
 //! for a singular transform (its determinant is then below 3·10⁻¹⁵).
 //!
 //! No installable library writes the format from Rust. A tree is root → 32³ nodes of
@@ -14,6 +14,7 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use glam::{UVec3, Vec3};
+use rayon::prelude::*;
 
 use super::dense::albedo;
 use super::{Plan, VolumeFileError};
@@ -82,11 +83,12 @@ const GRIDS: [Grid; 5] = [
     },
     Grid {
         name: "yarn",
-        kind: "Tree_int32_5_4_3",
+        // Debian's Python cannot read whole numbers; floats hold yarns exactly.
+        kind: "Tree_float_5_4_3",
         bytes: 4,
         metadata: None,
-        background: NO_YARN.to_le_bytes(),
-        put: |voxel, _, out| out.extend(voxel.yarn.to_le_bytes()),
+        background: (NO_YARN as f32).to_le_bytes(),
+        put: |voxel, _, out| out.extend((voxel.yarn as f32).to_le_bytes()),
     },
 ];
 
@@ -232,25 +234,19 @@ impl Parts {
         voxels: &[SourceVoxel],
         albedos: &[Vec3],
     ) -> io::Result<()> {
+        let places: Vec<UVec3> = tree_order(UVec3::ZERO, cells.size, LEAF).collect();
+        let leaves: Vec<Option<Leaf>> = places
+            .into_par_iter()
+            .map(|place| Leaf::of(cells.size, voxels, place, albedos))
+            .collect();
         let mut children = [0u8; LOWER_MASK];
         let mut masks: Vec<LeafMask> = Vec::new();
-        for leaf in tree_order(UVec3::ZERO, cells.size, LEAF) {
-            let (mask, active) = leaf_of(cells.size, voxels, leaf);
-            if active.is_empty() {
-                continue;
-            }
-            let place = leaf / LEAF;
+        for leaf in leaves.into_iter().flatten() {
+            let place = leaf.low / LEAF;
             set(&mut children, (place.x << 8) | (place.y << 4) | place.z);
-            masks.push(mask);
-            for (grid, scratch) in GRIDS.iter().zip(&mut self.values) {
-                let mut bytes = Vec::with_capacity(65 + active.len() * grid.bytes as usize);
-                bytes.extend(mask);
-                // What is not active has the background's value and is not stored.
-                bytes.push(0);
-                for voxel in &active {
-                    (grid.put)(voxel, albedos, &mut bytes);
-                }
-                scratch.0.write_all(&bytes)?;
+            masks.push(leaf.mask);
+            for (values, scratch) in leaf.values.iter().zip(&mut self.values) {
+                scratch.0.write_all(values)?;
             }
         }
         if masks.is_empty() {
@@ -341,22 +337,45 @@ fn set(mask: &mut [u8], bit: u32) {
     mask[bit as usize / 8] |= 1 << (bit % 8);
 }
 
-/// The mask of a leaf of a box of voxels and its active voxels in order.
-fn leaf_of(size: UVec3, voxels: &[SourceVoxel], leaf: UVec3) -> (LeafMask, Vec<SourceVoxel>) {
-    let mut mask = [0; 64];
-    let mut active = Vec::new();
-    let end = (leaf + LEAF).min(size);
-    for cell in tree_order(leaf, end, 1) {
-        // Boxes are filled x fastest, then z, then y.
-        let place = (cell.y as usize * size.z as usize + cell.z as usize) * size.x as usize;
-        let voxel = voxels[place + cell.x as usize];
-        if voxel.sigma > 0.0 {
-            let inside = cell - leaf;
-            set(&mut mask, (inside.x << 6) | (inside.y << 3) | inside.z);
-            active.push(voxel);
+/// A leaf with matter.
+struct Leaf {
+    low: UVec3,
+    mask: LeafMask,
+    /// Mask and active values as they stand in the file, by grid.
+    values: [Vec<u8>; GRIDS.len()],
+}
+
+impl Leaf {
+    /// The leaf of a box of voxels, if any of its voxels is active.
+    fn of(size: UVec3, voxels: &[SourceVoxel], low: UVec3, albedos: &[Vec3]) -> Option<Self> {
+        let mut mask = [0; 64];
+        let mut active = Vec::new();
+        let end = (low + LEAF).min(size);
+        for cell in tree_order(low, end, 1) {
+            // Boxes are filled x fastest, then z, then y.
+            let place = (cell.y as usize * size.z as usize + cell.z as usize) * size.x as usize;
+            let voxel = &voxels[place + cell.x as usize];
+            if voxel.sigma > 0.0 {
+                let inside = cell - low;
+                set(&mut mask, (inside.x << 6) | (inside.y << 3) | inside.z);
+                active.push(voxel);
+            }
         }
+        if active.is_empty() {
+            return None;
+        }
+        let values = GRIDS.map(|grid| {
+            let mut bytes = Vec::with_capacity(65 + active.len() * grid.bytes as usize);
+            bytes.extend(mask);
+            // What is not active has the background's value and is not stored.
+            bytes.push(0);
+            for voxel in &active {
+                (grid.put)(voxel, albedos, &mut bytes);
+            }
+            bytes
+        });
+        Some(Self { low, mask, values })
     }
-    (mask, active)
 }
 
 /// A text with its length before it.

@@ -7,6 +7,7 @@ use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume::{self, Plan, VolumeFormat, bytes_in_words};
 use pickglass::formats::yarns;
+use pickglass::job::Job;
 use pickglass::still::{self, StillRequest};
 use pickglass::volume::source::{Frame, VoxelSource};
 use pickglass::yarn::tubes;
@@ -37,7 +38,7 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         ..StillRequest::default()
     };
     let progress = Progress::new();
-    let job = progress.job();
+    let job = interruptible(&progress);
     let prepared = still::prepare(&opened.design, &request, &ExemplarStore::user(), &job);
     progress.finish();
     let prepared = prepared?;
@@ -69,6 +70,17 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         }));
     }
     out::say(&wrote(&written.files, written.bytes, seconds))
+}
+
+/// A job that an interrupt cancels, so that gigabytes half-written do not stay behind.
+fn interruptible(progress: &Progress) -> Job {
+    let job = progress.job();
+    let stop = job.clone();
+    // Where no handler can be set an interrupt ends the program at once, as ever.
+    if let Err(error) = ctrlc::set_handler(move || stop.cancel()) {
+        log::warn!("no interrupt handler: {error}");
+    }
+    job
 }
 
 /// The rectangle asked for, or one repeat of the weave.
@@ -136,7 +148,7 @@ fn run_yarns(args: &VolumeArgs, opened: &Opened, region: Region) -> anyhow::Resu
     )?;
     let progress = Progress::new();
     let begun = Instant::now();
-    let written = yarns::write(&opened.design, &tubes, path, &progress.job());
+    let written = yarns::write(&opened.design, &tubes, path, &interruptible(&progress));
     progress.finish();
     let written = written?;
     let seconds = begun.elapsed().as_secs_f64();
