@@ -329,7 +329,7 @@ impl ClothVolume {
             for (z, &height) in heights.iter().enumerate() {
                 for (x, end) in run.iter().enumerate() {
                     let point = Vec3::new(end.voxels, pick.voxels, height);
-                    let voxel = self.voxel_near(&crossing, point, 0.0);
+                    let voxel = self.voxel_near(&crossing, point, 0.0, None);
                     if voxel.sigma > 0.0 {
                         found(begun + x, z, &voxel);
                     }

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::build::ClothVolume;
 use super::window::StackShift;
-use crate::exemplar::{BrickVolume, cell_of};
+use crate::exemplar::{BrickVolume, bits_of, cell_of};
 use crate::render::Voxel;
 use crate::synthesis::{BlockRef, Face, Neighbourhood};
 
@@ -113,20 +113,23 @@ impl ClothVolume {
 
     /// The voxel at a point of a crossing given in voxels (x and y from the crossing's
     /// corner, z from the exemplar's floor), which may lie up to a block across its border.
-    /// One whose `sigma` is below `least` may be given as empty.
+    /// One whose `sigma` is below `least` may be given as empty. Coarse voxels choose among
+    /// the directions of their fibres by `chance`, uniform in [0,1); without one they give
+    /// the main direction.
     #[inline]
     pub(super) fn voxel_near<'c>(
         &'c self,
         crossing: &Crossing<'c>,
         point: Vec3,
         least: f32,
+        chance: Option<f32>,
     ) -> Voxel {
         let [bx, by, _] = self.grid.block.map(|voxels| voxels as i32);
         let (x, y) = (cell_of(point.x), cell_of(point.y));
         let side = |place: i32, block: i32| i32::from(place >= block) - i32::from(place < 0);
         let (across, along) = (side(x, bx), side(y, by));
         if (across, along) == (0, 0) {
-            return self.voxel_in(crossing, [x as usize, y as usize], point.z, least);
+            return self.voxel_in(crossing, [x as usize, y as usize], point.z, least, chance);
         }
         let beside = (
             crossing.end + i64::from(across),
@@ -138,7 +141,7 @@ impl ClothVolume {
         let within =
             |place: i32, side: i32, block: i32| (place - side * block).clamp(0, block - 1) as usize;
         let stack = [within(x, across, bx), within(y, along, by)];
-        self.voxel_in(&beside, stack, point.z, least)
+        self.voxel_in(&beside, stack, point.z, least, chance)
     }
 
     /// The voxel of stack (x, y) of a crossing at height `z` (voxels).
@@ -149,6 +152,7 @@ impl ClothVolume {
         [x, y]: [usize; 2],
         z: f32,
         least: f32,
+        chance: Option<f32>,
     ) -> Voxel {
         let depth = self.grid.block[2] as f32;
         // Blocks that only continue each other are not shifted.
@@ -171,9 +175,8 @@ impl ClothVolume {
         let Some(source) = self.source(crossing) else {
             return Voxel::EMPTY;
         };
-        let voxel = source
-            .volume
-            .get(source.corner[0] + x, source.corner[1] + y, height as usize);
+        let place = [source.corner[0] + x, source.corner[1] + y, height as usize];
+        let voxel = source.volume.get(place[0], place[1], place[2]);
         let weft = voxel.is_weft();
         let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
         let sigma = f32::from(voxel.fill()) * (1.0 / 255.0) * full;
@@ -201,6 +204,12 @@ impl ClothVolume {
                 .unwrap_or_else(|| self.warp_yarn(end, crossing.pick))
         };
         let mut direction = voxel.direction();
+        if source.volume.coarse()
+            && let Some(chance) = chance
+        {
+            let lobes = source.volume.lobes(place[0], place[1], place[2]);
+            direction = lobes.direction(direction, bits_of(chance));
+        }
         if let Some(rise) = seams
             && self.settings.shear
         {
@@ -310,7 +319,7 @@ impl ClothVolume {
             ((point.y - crossing.corner[1]) * crossing.per_mm[1]).clamp(0.0, by as f32 - 0.01),
             (point.z - self.grid.floor_mm()) / self.grid.voxel_mm.z,
         );
-        self.voxel_near(&crossing, local, 0.0)
+        self.voxel_near(&crossing, local, 0.0, None)
     }
 }
 

@@ -257,6 +257,6 @@ impl MajorantWalk for ClothWalk<'_> {
         if cloth.settings.tap {
             local += tap - 0.5;
         }
-        cloth.voxel_near(crossing, local, least)
+        cloth.voxel_near(crossing, local, least, Some(tap.z))
     }
 }

@@ -1,6 +1,7 @@
 //! Sparse voxels in bricks of 8³.
 
 use super::direction::{decode_direction, encode_direction};
+use super::lobes::Lobes;
 use glam::Vec3;
 
 /// Voxels along the edge of a brick.
@@ -62,6 +63,8 @@ pub struct BrickVolume {
     size: [usize; 3],
     index: Vec<u32>,
     voxels: Vec<PackedVoxel>,
+    /// Beside each voxel; none at level 0, whose voxels hold a fibre or two.
+    lobes: Vec<Lobes>,
 }
 
 impl BrickVolume {
@@ -73,6 +76,7 @@ impl BrickVolume {
             size,
             index: vec![EMPTY; bricks],
             voxels: Vec::new(),
+            lobes: Vec::new(),
         }
     }
 
@@ -83,7 +87,7 @@ impl BrickVolume {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.index.len() * 4 + self.voxels.len() * 4
+        self.index.len() * 4 + self.voxels.len() * 4 + self.lobes.len() * 4
     }
 
     fn brick(&self, x: usize, y: usize, z: usize) -> usize {
@@ -93,27 +97,48 @@ impl BrickVolume {
     /// The voxel at a place inside the grid.
     #[inline]
     pub fn get(&self, x: usize, y: usize, z: usize) -> PackedVoxel {
-        let brick = self.index[self.brick(x, y, z)];
-        if brick == EMPTY {
-            return PackedVoxel(0);
+        match self.place(x, y, z) {
+            Some(place) => self.voxels[place],
+            None => PackedVoxel(0),
         }
+    }
+
+    /// Where a voxel is kept; `None` in a brick without matter.
+    #[inline]
+    fn place(&self, x: usize, y: usize, z: usize) -> Option<usize> {
+        let brick = self.index[self.brick(x, y, z)];
         let within = (z % BRICK * BRICK + y % BRICK) * BRICK + x % BRICK;
-        self.voxels[brick as usize * BRICK_VOXELS + within]
+        (brick != EMPTY).then_some(brick as usize * BRICK_VOXELS + within)
+    }
+
+    /// Whether voxels hold fibres that point apart: only then are there [`Lobes`].
+    #[inline]
+    pub fn coarse(&self) -> bool {
+        !self.lobes.is_empty()
+    }
+
+    /// How far the fibres of a voxel inside the grid point apart.
+    pub fn lobes(&self, x: usize, y: usize, z: usize) -> Lobes {
+        let place = self.place(x, y, z);
+        place
+            .and_then(|place| self.lobes.get(place))
+            .copied()
+            .unwrap_or_default()
     }
 
     /// Appends the slab of bricks y = 8·`row`.. from a dense slab, x fastest, then y
-    /// (8 rows), then z. Slabs come in any order, each once.
-    pub(crate) fn put_slab(&mut self, row: usize, slab: &[PackedVoxel]) {
+    /// (8 rows), then z; `lobes` likewise, or none. Slabs come in any order, each once.
+    pub(crate) fn put_slab(&mut self, row: usize, slab: &[PackedVoxel], lobes: &[Lobes]) {
         let [width, _, depth] = self.size;
         for brick_z in 0..depth / BRICK {
             for brick_x in 0..width / BRICK {
-                let voxel = |x: usize, y: usize, z: usize| {
-                    slab[((brick_z * BRICK + z) * BRICK + y) * width + brick_x * BRICK + x]
+                let row_at = |y: usize, z: usize| {
+                    ((brick_z * BRICK + z) * BRICK + y) * width + brick_x * BRICK
                 };
                 let start = self.voxels.len();
                 for z in 0..BRICK {
                     for y in 0..BRICK {
-                        self.voxels.extend((0..BRICK).map(|x| voxel(x, y, z)));
+                        self.voxels.extend(&slab[row_at(y, z)..][..BRICK]);
                     }
                 }
                 if self.voxels[start..].iter().all(|v| v.fill() == 0) {
@@ -121,6 +146,10 @@ impl BrickVolume {
                 } else {
                     let brick = self.brick(brick_x * BRICK, row * BRICK, brick_z * BRICK);
                     self.index[brick] = (start / BRICK_VOXELS) as u32;
+                    for (y, z) in (0..BRICK).flat_map(|z| (0..BRICK).map(move |y| (y, z))) {
+                        let row = lobes.get(row_at(y, z)..).unwrap_or_default();
+                        self.lobes.extend(row.iter().take(BRICK));
+                    }
                 }
             }
         }
@@ -149,9 +178,9 @@ impl BrickVolume {
         }
     }
 
-    /// The parts that a file stores: sizes, brick index, voxels.
-    pub(crate) fn parts(&self) -> ([usize; 3], &[u32], &[PackedVoxel]) {
-        (self.size, &self.index, &self.voxels)
+    /// The parts that a file stores: sizes, brick index, voxels, lobes.
+    pub(crate) fn parts(&self) -> ([usize; 3], &[u32], &[PackedVoxel], &[Lobes]) {
+        (self.size, &self.index, &self.voxels, &self.lobes)
     }
 
     /// Puts stored parts together again; `None` when they do not fit each other.
@@ -159,16 +188,19 @@ impl BrickVolume {
         size: [usize; 3],
         index: Vec<u32>,
         voxels: Vec<PackedVoxel>,
+        lobes: Vec<Lobes>,
     ) -> Option<Self> {
         let bricks = voxels.len() / BRICK_VOXELS;
         let fits = size.iter().all(|n| *n > 0 && n % BRICK == 0)
             && index.len() == size.iter().map(|n| n / BRICK).product::<usize>()
             && voxels.len().is_multiple_of(BRICK_VOXELS)
+            && (lobes.is_empty() || lobes.len() == voxels.len())
             && index.iter().all(|&i| i == EMPTY || (i as usize) < bricks);
         fits.then_some(Self {
             size,
             index,
             voxels,
+            lobes,
         })
     }
 }
@@ -203,7 +235,7 @@ mod tests {
         let mut slab = vec![PackedVoxel(0); 16 * 8 * 8];
         let voxel = PackedVoxel::new(1.0, Vec3::Y, 1, false);
         slab[(3 * 8 + 2) * 16 + 9] = voxel;
-        volume.put_slab(1, &slab);
+        volume.put_slab(1, &slab, &[]);
         assert_eq!(volume.get(9, 10, 3), voxel);
         assert_eq!(volume.get(8, 10, 3).fill(), 0);
         assert_eq!(volume.voxels.len(), BRICK_VOXELS);

@@ -239,7 +239,7 @@ impl Dense {
                 let (z, y) = (rest % nz, rest / nz % BRICK);
                 slab[(z * BRICK + y) * nx + x] = PackedVoxel::new(fill, tangent, yarn, weft);
             }
-            volume.put_slab(row, &slab);
+            volume.put_slab(row, &slab, &[]);
         }
         volume
     }

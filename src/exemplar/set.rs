@@ -103,6 +103,7 @@ pub fn common_grid(
     Ok(VoxelGrid {
         block: [bx, by, depth],
         voxel_mm: Vec3::new(vx, vy, vz),
+        level,
     })
 }
 

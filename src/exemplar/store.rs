@@ -15,13 +15,14 @@ use std::time::SystemTime;
 use rayon::prelude::*;
 
 use super::bricks::{BrickVolume, PackedVoxel};
+use super::lobes::Lobes;
 use super::set::{ExemplarError, ExemplarSet, Pair, build_exemplar};
 use super::voxelise::VoxelGrid;
 use crate::job::{Cancelled, Job};
 use crate::synthesis::Catalogue;
 
 /// Changes whenever exemplars built from the same recipe change.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 3;
 const MAGIC: &[u8; 8] = b"pickglas";
 /// Bytes that the folder may hold.
 const LIMIT: u64 = 4 << 30;
@@ -193,10 +194,11 @@ fn write(folder: &Path, path: &Path, volume: &BrickVolume) -> std::io::Result<()
         hasher: blake3::Hasher::new(),
     };
     out.put(MAGIC)?;
-    let (size, index, voxels) = volume.parts();
+    let (size, index, voxels, lobes) = volume.parts();
     out.put_list(&size.map(|n| n as u32))?;
     out.put_list(index)?;
     out.put_list(voxels)?;
+    out.put_list(lobes)?;
     let hash = out.hasher.finalize();
     out.inner.write_all(hash.as_bytes())?;
     let temporary = out
@@ -236,7 +238,8 @@ fn read(path: &Path) -> Option<BrickVolume> {
     let mut parts = Parts(&content[MAGIC.len()..]);
     let size: [u32; 3] = parts.list::<u32>()?.try_into().ok()?;
     let (index, voxels) = (parts.list::<u32>()?, parts.list::<PackedVoxel>()?);
-    let volume = BrickVolume::from_parts(size.map(|n| n as usize), index, voxels)?;
+    let lobes = parts.list::<Lobes>()?;
+    let volume = BrickVolume::from_parts(size.map(|n| n as usize), index, voxels, lobes)?;
     parts.0.is_empty().then_some(volume)
 }
 

@@ -1,13 +1,15 @@
 //! Fibres to voxels: fill fraction, principal direction of ttᵀ, yarn.
 //!
 //! A fibre runs mainly along its yarn, so it is met plane by plane: one point for each
-//! voxel plane across the yarn, splatted as a disc of the fibre's own thickness. Slabs of
-//! eight voxel rows are independent and run in parallel; sums are in fixed order.
+//! voxel plane across the yarn (above level 0, for each plane that level 0 would have),
+//! splatted as a disc of the fibre's own thickness. Slabs of eight voxel rows are
+//! independent and run in parallel; sums are in fixed order.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::bricks::{BRICK, BrickVolume, PackedVoxel};
+use super::lobes::Lobes;
 use crate::job::{Cancelled, Job};
 use crate::yarn::fibre::{self, FibreLayout};
 use crate::yarn::{Direction, WeaveGeometry, YarnRecipe};
@@ -19,6 +21,8 @@ pub struct VoxelGrid {
     pub block: [usize; 3],
     /// Size of a voxel, mm.
     pub voxel_mm: Vec3,
+    /// How often the resolution was halved.
+    pub level: u32,
 }
 
 impl VoxelGrid {
@@ -34,6 +38,10 @@ struct Strands {
     /// Points of each fibre, `planes` each, in voxels.
     points: Vec<Vec3>,
     planes: usize,
+    /// Points to a voxel.
+    steps: usize,
+    /// Share of a splat that a voxel takes, so that all levels hold as much fibre.
+    share: f32,
     /// Yarn of each fibre.
     yarns: Vec<u8>,
     /// Fibre radius, mm.
@@ -73,14 +81,14 @@ pub fn voxelise(
         strands(weave, weft, Direction::Weft, grid, size[0], seed),
     ];
     job.check()?;
-    let slabs: Vec<Vec<PackedVoxel>> = (0..size[1] / BRICK)
+    let slabs: Vec<Slab> = (0..size[1] / BRICK)
         .into_par_iter()
-        .map(|row| slab(&strands, size, grid.voxel_mm, row))
+        .map(|row| slab(&strands, size, grid, row))
         .collect();
     job.check()?;
     let mut volume = BrickVolume::new(size);
-    for (row, slab) in slabs.iter().enumerate() {
-        volume.put_slab(row, slab);
+    for (row, (voxels, lobes)) in slabs.iter().enumerate() {
+        volume.put_slab(row, voxels, lobes);
     }
     Ok(volume)
 }
@@ -94,6 +102,9 @@ fn strands(
     seed: u64,
 ) -> Strands {
     let layout = FibreLayout::new(recipe);
+    let steps = 1 << grid.level;
+    let planes = planes * steps;
+    let radius = recipe.fibre_um * 0.5e-3;
     let yarns = weave.yarns(direction).len();
     let mut points = vec![Vec3::ZERO; yarns * layout.len() * planes];
     let floor = Vec3::new(0.0, 0.0, grid.floor_mm());
@@ -114,12 +125,18 @@ fn strands(
         direction,
         points,
         planes,
+        steps,
+        share: share_of(direction, radius, grid) / steps as f32,
         yarns,
-        radius: recipe.fibre_um * 0.5e-3,
+        radius,
     }
 }
 
-fn slab(strands: &[Strands; 2], size: [usize; 3], voxel_mm: Vec3, row: usize) -> Vec<PackedVoxel> {
+/// Eight rows of voxels, and above level 0 how far the fibres of each point apart.
+type Slab = (Vec<PackedVoxel>, Vec<Lobes>);
+
+fn slab(strands: &[Strands; 2], size: [usize; 3], grid: &VoxelGrid, row: usize) -> Slab {
+    let voxel_mm = grid.voxel_mm;
     let [width, height, depth] = size;
     let mut sums = vec![Sums::default(); width * BRICK * depth];
     let rows = row * BRICK..(row + 1) * BRICK;
@@ -128,9 +145,9 @@ fn slab(strands: &[Strands; 2], size: [usize; 3], voxel_mm: Vec3, row: usize) ->
             let points = &strands.points[fibre * strands.planes..][..strands.planes];
             match strands.direction {
                 Direction::Warp => {
-                    for plane in rows.clone() {
+                    for plane in rows.start * strands.steps..rows.end * strands.steps {
                         let splat = Splat::new(strands, points, plane, voxel_mm, yarn);
-                        let y = plane - rows.start;
+                        let y = plane / strands.steps - rows.start;
                         splat.over(
                             Vec2::new(points[plane].x, points[plane].z),
                             Vec2::new(voxel_mm.x, voxel_mm.z),
@@ -154,6 +171,7 @@ fn slab(strands: &[Strands; 2], size: [usize; 3], voxel_mm: Vec3, row: usize) ->
                     };
                     for (plane, point) in points.iter().enumerate().filter(|(_, p)| near(p.y)) {
                         let splat = Splat::new(strands, points, plane, voxel_mm, yarn);
+                        let x = plane / strands.steps;
                         splat.over(
                             Vec2::new(point.y, point.z),
                             Vec2::new(voxel_mm.y, voxel_mm.z),
@@ -162,7 +180,7 @@ fn slab(strands: &[Strands; 2], size: [usize; 3], voxel_mm: Vec3, row: usize) ->
                                 if (0..depth as i64).contains(&z) && rows.contains(&y) {
                                     splat.add(
                                         &mut sums
-                                            [(z as usize * BRICK + y - rows.start) * width + plane],
+                                            [(z as usize * BRICK + y - rows.start) * width + x],
                                         weight,
                                     );
                                 }
@@ -173,7 +191,10 @@ fn slab(strands: &[Strands; 2], size: [usize; 3], voxel_mm: Vec3, row: usize) ->
             }
         }
     }
-    sums.iter().map(Sums::pack).collect()
+    if grid.level == 0 {
+        return (sums.iter().map(Sums::pack).collect(), Vec::new());
+    }
+    sums.iter().map(Sums::pack_apart).unzip()
 }
 
 /// One fibre point on its way into the voxels around it.
@@ -181,6 +202,7 @@ struct Splat {
     direction: Vec3,
     /// Fibre radius where the plane cuts it, mm.
     radius: f32,
+    share: f32,
     yarn: u8,
     weft: bool,
 }
@@ -200,6 +222,7 @@ impl Splat {
         Self {
             direction,
             radius: strands.radius,
+            share: strands.share,
             yarn,
             weft: strands.direction == Direction::Weft,
         }
@@ -211,11 +234,11 @@ impl Splat {
         if !centre.is_finite() {
             return;
         }
-        let edge = 0.5 * (pitch.x + pitch.y) * 0.5;
+        let edge = edge_of(pitch);
         let reach = Vec2::splat(self.radius + edge) / pitch;
         let (low, high) = ((centre - reach).floor(), (centre + reach).floor());
         // A fibre thinner than a voxel fills only a part of it.
-        let thin = (self.radius / edge).min(1.0);
+        let thin = (self.radius / edge).min(1.0) * self.share;
         for b in low.y as i64..=high.y as i64 {
             for a in low.x as i64..=high.x as i64 {
                 let offset = (Vec2::new(a as f32 + 0.5, b as f32 + 0.5) - centre) * pitch;
@@ -247,6 +270,33 @@ impl Splat {
     }
 }
 
+/// Width of a splat's soft edge on each side of its rim: half a voxel.
+fn edge_of(pitch: Vec2) -> f32 {
+    0.5 * (pitch.x + pitch.y) * 0.5
+}
+
+/// What a splat's weights have to be multiplied by so that they sum to as much as at
+/// level 0, where voxels are thinner than a fibre.
+fn share_of(direction: Direction, radius: f32, grid: &VoxelGrid) -> f32 {
+    if grid.level == 0 {
+        return 1.0;
+    }
+    let across = match direction {
+        Direction::Warp => grid.voxel_mm.x,
+        Direction::Weft => grid.voxel_mm.y,
+    };
+    // The weights over a plane make a disc with a soft rim; on thick voxels, a cone.
+    let section = |edge: f32| {
+        if radius >= edge {
+            radius * radius + edge * edge / 3.0
+        } else {
+            (radius + edge).powi(3) / (6.0 * edge) * (radius / edge)
+        }
+    };
+    let edge = edge_of(Vec2::new(across, grid.voxel_mm.z));
+    section(edge / (1 << grid.level) as f32) / section(edge)
+}
+
 impl Sums {
     fn pack(&self) -> PackedVoxel {
         if self.fill < 1.0 / 510.0 {
@@ -254,6 +304,17 @@ impl Sums {
         }
         let (direction, _) = principal_axis(self.moments);
         PackedVoxel::new(self.fill, direction, self.yarn, self.weft)
+    }
+
+    fn pack_apart(&self) -> (PackedVoxel, Lobes) {
+        if self.fill < 1.0 / 510.0 {
+            return (PackedVoxel(0), Lobes::default());
+        }
+        let (direction, lobes) = Lobes::new(self.moments);
+        (
+            PackedVoxel::new(self.fill, direction, self.yarn, self.weft),
+            lobes,
+        )
     }
 }
 
@@ -344,6 +405,7 @@ mod tests {
         let grid = VoxelGrid {
             block: [80, 80, 120],
             voxel_mm: Vec3::splat(0.006),
+            level: 0,
         };
         let volume = voxelise(&weave, &recipe, &recipe, &grid, 1, &Job::new()).unwrap();
         let mut fill = 0.0;

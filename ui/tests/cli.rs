@@ -408,3 +408,58 @@ fn a_closed_pipe_is_not_a_panic() {
         String::from_utf8_lossy(&output.stderr)
     );
 }
+
+/// Runs the program where no file may grow beyond `kilobytes`: as on a disk that fills up
+/// midway.
+#[cfg(unix)]
+fn on_a_full_disk(folder: &Path, kilobytes: u32, arguments: &[&str]) -> Output {
+    let script = format!(
+        "trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"",
+        2 * kilobytes
+    );
+    Command::new("sh")
+        .args(["-c", &script, env!("CARGO_BIN_EXE_pickglass")])
+        .args(arguments)
+        .current_dir(folder)
+        .env("PICKGLASS_CACHE", folder.join("none/cache"))
+        .output()
+        .expect("a shell starts")
+}
+
+#[cfg(unix)]
+#[test]
+fn a_volume_that_meets_a_full_disk_leaves_nothing_behind() {
+    for ending in ["vol", "vdb", "nrrd", "mhd", "tif"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let name = format!("cloth.{ending}");
+        let volume = [
+            "volume",
+            "oxford",
+            "-o",
+            &name,
+            "--region",
+            "0,0,4,4",
+            "--voxels-per-crossing",
+            "24",
+        ];
+        std::fs::write(folder.path().join(&name), "kept").expect("written");
+        let output = on_a_full_disk(folder.path(), 64, &volume);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        let line = said.lines().last().unwrap_or_default();
+        assert!(line.contains("cloth") && line.contains("; "), "{line}");
+        let left: Vec<_> = std::fs::read_dir(folder.path())
+            .expect("listed")
+            .flatten()
+            .map(|entry| entry.file_name())
+            .collect();
+        assert_eq!(left, [name.as_str()], "{ending}");
+        let kept = std::fs::read(folder.path().join(&name)).expect("read");
+        assert_eq!(kept, b"kept", "{ending}: an earlier file stays");
+        // With room it is written.
+        let output = on_a_full_disk(folder.path(), 1 << 20, &volume);
+        assert!(output.status.success(), "{ending}");
+        let written = std::fs::metadata(folder.path().join(&name)).expect("there");
+        assert!(written.len() > 4, "{ending}");
+    }
+}

@@ -1,0 +1,150 @@
+//! How far the fibres of a coarse voxel point apart, in four bytes.
+//!
+//! A voxel above level 0 holds many fibres. Their mean E[ttᵀ] has the axes e₁, e₂, e₃ with
+//! shares λ₁ ≥ λ₂ ≥ λ₃ of its trace 1. A lookup takes one of the four directions
+//! √λ₁e₁ ± √λ₂e₂ ± √λ₃e₃ by chance: each is a unit vector, and their mean ttᵀ is the
+//! voxel's own. So a coarse voxel scatters as a mixture of fibres, and a highlight that
+//! glides over a crimped float stays as wide as the float's slopes make it; one mean
+//! direction with a larger α would blur it all round.
+
+use glam::Vec3;
+use nalgebra::{Matrix3, SymmetricEigen};
+
+use super::direction::{decode_direction, encode_direction};
+
+/// The second and third axis of the fibres of a voxel, and how far fibres lean to them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Lobes {
+    /// Angle of e₂ round e₁, in 1/256 of a half turn.
+    turn: u8,
+    /// √λ₂ and √λ₃ in 1/255.
+    lean: [u8; 2],
+    /// Keeps the size a power of two.
+    unused: u8,
+}
+
+impl Lobes {
+    /// The main axis e₁ of summed moments Σ w ttᵀ (xx, yy, zz, xy, xz, yz), and what lies
+    /// beside it. Moments without a finite trace above 0 give +z alone.
+    pub fn new(moments: [f32; 6]) -> (Vec3, Self) {
+        let [xx, yy, zz, xy, xz, yz] = moments.map(f64::from);
+        let trace = xx + yy + zz;
+        if !(trace.is_finite() && trace > 0.0) {
+            return (Vec3::Z, Self::default());
+        }
+        let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) / trace;
+        let Some(eigen) = SymmetricEigen::try_new(matrix, 1e-14, 200) else {
+            return (Vec3::Z, Self::default());
+        };
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let axis = |rank: usize| {
+            let column = eigen.eigenvectors.column(order[rank]);
+            Vec3::new(column[0] as f32, column[1] as f32, column[2] as f32)
+        };
+        // The angle is measured in the frame of the axis as it will be read back.
+        let first = decode_direction(encode_direction(axis(0)));
+        let (a, b) = frame(first);
+        let second = axis(1);
+        let angle = second.dot(b).atan2(second.dot(a)) / std::f32::consts::PI;
+        let lean = [1, 2].map(|rank| {
+            let share = eigen.eigenvalues[order[rank]].clamp(0.0, 1.0);
+            (share.sqrt() * 255.0).round() as u8
+        });
+        let turn = (angle.rem_euclid(1.0) * 256.0).round() as u32 as u8;
+        let unused = 0;
+        (first, Self { turn, lean, unused })
+    }
+
+    /// One of the four directions about the axis `first`, chosen by two bits.
+    pub fn direction(self, first: Vec3, bits: u32) -> Vec3 {
+        if self.lean == [0, 0] {
+            return first;
+        }
+        let (sine, cosine) = (f32::from(self.turn) * (std::f32::consts::PI / 256.0)).sin_cos();
+        let (a, b) = frame(first);
+        let sign = |bit: u32| if bits >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let [second, third] = self.lean.map(|lean| f32::from(lean) * (1.0 / 255.0));
+        let rest = (1.0 - second * second - third * third).max(0.0).sqrt();
+        let aside = (a * cosine + b * sine) * (sign(0) * second)
+            + (b * cosine - a * sine) * (sign(1) * third);
+        (first * rest + aside).try_normalize().unwrap_or(first)
+    }
+}
+
+/// Two bits of a uniform number in [0,1) that say nothing of its size.
+#[inline]
+pub fn bits_of(uniform: f32) -> u32 {
+    // The last bits of those that filters get, which are multiples of 2⁻²¹.
+    (uniform * 2_097_152.0) as u32
+}
+
+/// Two unit vectors that make a right-handed frame with a unit vector.
+fn frame(axis: Vec3) -> (Vec3, Vec3) {
+    axis.any_orthonormal_pair()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moments(fibres: &[(Vec3, f32)]) -> [f32; 6] {
+        let mut sum = [0.0; 6];
+        for &(t, w) in fibres {
+            let products = [
+                t.x * t.x,
+                t.y * t.y,
+                t.z * t.z,
+                t.x * t.y,
+                t.x * t.z,
+                t.y * t.z,
+            ];
+            for (sum, product) in sum.iter_mut().zip(products) {
+                *sum += w * product;
+            }
+        }
+        sum
+    }
+
+    /// Largest difference of two sums of moments.
+    fn apart(a: [f32; 6], b: [f32; 6]) -> f32 {
+        (a.iter().zip(&b)).fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
+    }
+
+    #[test]
+    fn the_four_directions_have_the_moments_of_the_fibres() {
+        let unit = |x: f32, y: f32, z: f32| Vec3::new(x, y, z).normalize_or(Vec3::Z);
+        for fibres in [
+            vec![(unit(1.0, 0.0, 0.3), 0.5), (unit(1.0, 0.1, -0.3), 0.5)],
+            vec![(unit(0.2, 1.0, 0.1), 0.6), (unit(1.0, 0.2, 0.3), 0.4)],
+            vec![(Vec3::X, 0.4), (Vec3::Y, 0.35), (Vec3::Z, 0.25)],
+        ] {
+            let own = moments(&fibres);
+            let (axis, lobes) = Lobes::new(own.map(|m| 7.0 * m));
+            let four: Vec<(Vec3, f32)> = (0..4)
+                .map(|bits| (lobes.direction(axis, bits), 0.25))
+                .collect();
+            assert!(four.iter().all(|(t, _)| (t.length() - 1.0).abs() < 1e-4));
+            // Packing the axis moves it by up to a degree.
+            assert!(apart(moments(&four), own) < 0.03, "{fibres:?}");
+            assert!(
+                apart(moments(&[(axis, 1.0)]), own) > 0.04,
+                "one direction is not enough"
+            );
+        }
+    }
+
+    #[test]
+    fn one_fibre_has_one_direction_and_bad_moments_have_none() {
+        let t = Vec3::new(0.6, 0.0, 0.8);
+        let (axis, lobes) = Lobes::new(moments(&[(t, 2.0)]));
+        for bits in 0..4 {
+            assert!(lobes.direction(axis, bits).dot(t).abs() > 0.999);
+        }
+        for bad in [[0.0; 6], [f32::NAN; 6], [f32::INFINITY; 6], [-1.0; 6]] {
+            let (axis, lobes) = Lobes::new(bad);
+            assert_eq!((axis, lobes), (Vec3::Z, Lobes::default()));
+        }
+    }
+}
