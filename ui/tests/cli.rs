@@ -413,6 +413,7 @@ fn a_closed_pipe_is_not_a_panic() {
 /// midway.
 #[cfg(unix)]
 fn on_a_full_disk(folder: &Path, kilobytes: u32, arguments: &[&str]) -> Output {
+    let cache = tempfile::tempdir().expect("a folder");
     let script = format!(
         "trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"",
         2 * kilobytes
@@ -421,7 +422,7 @@ fn on_a_full_disk(folder: &Path, kilobytes: u32, arguments: &[&str]) -> Output {
         .args(["-c", &script, env!("CARGO_BIN_EXE_pickglass")])
         .args(arguments)
         .current_dir(folder)
-        .env("PICKGLASS_CACHE", folder.join("none/cache"))
+        .env("PICKGLASS_CACHE", cache.path())
         .output()
         .expect("a shell starts")
 }
