@@ -4,26 +4,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
+mod memory;
 mod volume_sources;
 
 use glam::UVec3;
+use memory::{peak, reset_peak};
 use pickglass::formats::volume;
 use pickglass::job::Job;
 use volume_sources::Rule;
-
-/// Peak resident memory since the last reset in bytes; `None` where the system cannot say.
-fn peak() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024)
-}
-
-/// Sets the peak back to what is resident now, and gives that.
-fn reset_peak() -> Option<u64> {
-    std::fs::write("/proc/self/clear_refs", "5").ok()?;
-    peak()
-}
 
 #[test]
 fn memory_does_not_grow_with_the_window() {
