@@ -313,6 +313,34 @@ impl WeavePattern {
         })
     }
 
+    /// The crossings (end, pick) that differ from an earlier pattern, in no order to rely
+    /// on; tiles that both share are not looked into. `None` where the sizes differ or
+    /// more than `most` crossings do.
+    pub fn changed_since(&self, earlier: &Self, most: usize) -> Option<Vec<(u32, u32)>> {
+        if (self.ends, self.picks) != (earlier.ends, earlier.picks) {
+            return None;
+        }
+        let mut changed = Vec::new();
+        let columns = self.words_per_pick();
+        for (index, (now, before)) in self.tiles.iter().zip(&earlier.tiles).enumerate() {
+            if Arc::ptr_eq(now, before) {
+                continue;
+            }
+            let (column, row) = (index as u32 % columns, index as u32 / columns);
+            for (pick, (now, before)) in (row * TILE..).zip(now.iter().zip(before.iter())) {
+                let mut bits = now ^ before;
+                while bits != 0 {
+                    changed.push((column * TILE + bits.trailing_zeros(), pick));
+                    bits &= bits - 1;
+                }
+            }
+            if changed.len() > most {
+                return None;
+            }
+        }
+        Some(changed)
+    }
+
     /// Number of crossings with the warp on top.
     pub fn count_warp_up(&self) -> u64 {
         self.tiles

@@ -1,4 +1,4 @@
-//! Making the cloth of a design and its picture.
+//! The picture of a prepared cloth, pass by pass.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 
+use super::prepare::{PreparedCloth, prepare};
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
-use crate::design::{Design, Yarn};
+use crate::cloth::{ClothSettings, HairLayer};
+use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
@@ -17,8 +18,6 @@ use crate::render::{
     self, Both, Camera, Denoise, Film, LightRig, RenderOutcome, RenderSettings, Scatterer, Tone,
     View,
 };
-use crate::synthesis::Catalogue;
-use crate::yarn::YarnRecipe;
 
 /// Samples a pixel when a request gives no way to stop.
 const USUAL_SPP: u32 = 64;
@@ -34,64 +33,6 @@ pub fn usual_width_mm(view: View, design: &Design) -> f32 {
         View::Close => pitch * 9.0,
         View::Oblique | View::Grazing => pitch * 24.0,
         View::Face | View::Back => (pitch * design.ends() as f32).clamp(pitch * 24.0, pitch * 72.0),
-    }
-}
-
-/// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
-pub struct PreparedCloth {
-    design: Arc<Design>,
-    cloth: ClothVolume,
-    seconds: Vec<(String, f64)>,
-    effects: SwitchedEffects,
-}
-
-impl PreparedCloth {
-    /// Whether an effect is simulated.
-    fn on(&self, name: &str) -> bool {
-        self.effects
-            .iter()
-            .any(|(effect, on)| effect == name && *on)
-    }
-
-    /// Whether each yarn has hairs.
-    fn hairy(&self) -> Vec<bool> {
-        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
-        self.design
-            .yarns()
-            .iter()
-            .map(|yarn| hairs(yarn) >= 0.5)
-            .collect()
-    }
-
-    /// The cloth.
-    pub fn cloth(&self) -> &ClothVolume {
-        &self.cloth
-    }
-
-    /// Puts the cloth into the yarns of `design`, the same design in another colourway,
-    /// without making anything anew. False, and nothing changed, where a yarn has another
-    /// family or size: then [`prepare`] it.
-    pub fn recolour(&mut self, design: &Arc<Design>) -> bool {
-        let alike = self.cloth.recolour_as(design);
-        if alike {
-            self.design = Arc::clone(design);
-            self.seconds.clear();
-        }
-        alike
-    }
-}
-
-/// The design in the colourway that a request names.
-///
-/// # Errors
-/// When it has no such colourway.
-pub(super) fn coloured(
-    design: &Arc<Design>,
-    request: &StillRequest,
-) -> Result<Arc<Design>, StillError> {
-    match &request.colourway {
-        None => Ok(Arc::clone(design)),
-        Some(name) => Ok(Arc::new(Design::clone(design).with_colourway(name)?)),
     }
 }
 
@@ -138,48 +79,6 @@ pub(super) fn settings(
     Ok((cloth, render, on))
 }
 
-/// Builds what every picture of a design needs; `request` gives the dials, the seed and
-/// the colourway.
-///
-/// # Errors
-/// When the design cannot be made into cloth, a dial is wrong, or the job is cancelled.
-pub fn prepare(
-    design: &Arc<Design>,
-    request: &StillRequest,
-    store: &ExemplarStore,
-    job: &Job,
-) -> Result<PreparedCloth, StillError> {
-    let (settings, _, effects) = settings(request)?;
-    let design = &coloured(design, request)?;
-    let begun = Instant::now();
-    let catalogue = Arc::new(Catalogue::standard());
-    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, job)?;
-    let assigning = begun.elapsed().as_secs_f64();
-    let begun = Instant::now();
-    let classes = YarnClasses::new(design);
-    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).map_err(ClothError::from)?;
-    let sets = (classes.pairs.iter())
-        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(ClothError::from)?;
-    let exemplars = begun.elapsed().as_secs_f64();
-    let begun = Instant::now();
-    let albedo: Vec<Vec3> = design.yarns().iter().map(colour::albedo).collect();
-    let cloth = ClothVolume::new(
-        design, catalogue, classes, assignment, sets, albedo, settings, job,
-    )?;
-    let synthesis = assigning + begun.elapsed().as_secs_f64();
-    Ok(PreparedCloth {
-        design: Arc::clone(design),
-        cloth,
-        seconds: vec![
-            ("exemplars".to_owned(), exemplars),
-            ("synthesis".to_owned(), synthesis),
-        ],
-        effects,
-    })
-}
-
 pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
     let rig = match choice {
         LightChoice::Preset(name) => LightRig::preset(name)?,
@@ -194,7 +93,7 @@ pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, Still
     })
 }
 
-fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
+pub(super) fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
     let [x, y] = [
         design.end_positions().repeat_mm(),
         design.pick_positions().repeat_mm(),
@@ -242,7 +141,7 @@ pub fn render(
         request,
     };
     let (x, y) = in_view(&shot.camera, request.view);
-    let cloth = prepared.cloth.clone().with_window(x, y);
+    let cloth = prepared.cloth().clone().with_window(x, y);
     let hairs = prepared
         .on("hairs")
         .then(|| HairLayer::new(&cloth, prepared.hairy()))
@@ -255,7 +154,7 @@ pub fn render(
         outcome,
         prepared.seconds.clone(),
         prepared.effects.clone(),
-        (prepared.design.name.clone(), design_hash(&prepared.design)),
+        Subject::Design(Arc::clone(&prepared.design)),
     ))
 }
 
@@ -330,14 +229,13 @@ impl Shot<'_> {
         }
     }
 
-    /// The still of a film: `seconds` before rendering, and the title and hash of what it
-    /// shows.
+    /// The still of a film: `seconds` before rendering, and what it shows.
     pub fn develop(
         &self,
         outcome: RenderOutcome,
         mut seconds: Vec<(String, f64)>,
         effects: SwitchedEffects,
-        (title, hash): (String, String),
+        subject: Subject,
     ) -> Still {
         let request = self.request;
         seconds.push(("render".to_owned(), outcome.seconds));
@@ -356,13 +254,6 @@ impl Shot<'_> {
             majorant_violations: outcome.counters.majorant_violations,
             effects,
         };
-        let software = format!("Pickglass {}", env!("CARGO_PKG_VERSION"));
-        let texts = [
-            ("Software", software),
-            ("Title", title),
-            ("Design", hash),
-            ("Settings", format!("{request:?}")),
-        ];
         Still {
             report,
             film: outcome.film,
@@ -370,7 +261,8 @@ impl Shot<'_> {
             denoise: effects::denoises(&request.dials),
             depth: effects::png_depth(&request.dials),
             pixels_per_mm: self.camera.pixels_per_mm(),
-            texts: texts.map(|(key, text)| (key.to_owned(), text)).to_vec(),
+            subject,
+            settings: format!("{request:?}"),
         }
     }
 }
@@ -410,7 +302,7 @@ fn known(error: f64) -> Option<f64> {
     error.is_finite().then_some(error)
 }
 
-fn byte(value: f32) -> u8 {
+pub(super) fn byte(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
@@ -432,7 +324,16 @@ pub struct Still {
     denoise: bool,
     depth: png::Depth,
     pub(super) pixels_per_mm: f32,
-    pub(super) texts: Vec<(String, String)>,
+    subject: Subject,
+    settings: String,
+}
+
+/// What a still shows.
+pub(super) enum Subject {
+    /// A design's cloth.
+    Design(Arc<Design>),
+    /// A volume that was read, by its name.
+    Volume(String),
 }
 
 impl Still {
@@ -446,6 +347,26 @@ impl Still {
         }
     }
 
+    /// What the picture's file says of it.
+    pub(super) fn texts(&self) -> Vec<(String, String)> {
+        // The hash is of the whole document: it is worked out for pictures that are kept.
+        let (title, hash) = match &self.subject {
+            Subject::Design(design) => (design.name.clone(), design_hash(design)),
+            Subject::Volume(name) => (name.clone(), "a volume".to_owned()),
+        };
+        [
+            (
+                "Software",
+                format!("Pickglass {}", env!("CARGO_PKG_VERSION")),
+            ),
+            ("Title", title),
+            ("Design", hash),
+            ("Settings", self.settings.clone()),
+        ]
+        .map(|(key, text)| (key.to_owned(), text))
+        .to_vec()
+    }
+
     /// Writes `.png` or `.exr`, replacing the file in one step.
     ///
     /// # Errors
@@ -455,12 +376,12 @@ impl Still {
             Some(ending) if ending.eq_ignore_ascii_case("png") => {
                 let metadata = png::Metadata {
                     pixels_per_mm: Some(self.pixels_per_mm),
-                    texts: self.texts.clone(),
+                    texts: self.texts(),
                 };
                 png::write(path, &self.picture(), self.depth, &metadata)?;
             }
             Some(ending) if ending.eq_ignore_ascii_case("exr") => {
-                exr::write(path, &self.film, self.pixels_per_mm, &self.texts)?;
+                exr::write(path, &self.film, self.pixels_per_mm, &self.texts())?;
             }
             _ => return Err(StillError::Ending(path.to_owned())),
         }
