@@ -35,6 +35,7 @@ mod pattern;
 mod sett;
 mod source;
 mod structure;
+mod tiles;
 mod weaves;
 mod yarn;
 
