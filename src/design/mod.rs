@@ -18,6 +18,7 @@
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
 //! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
+//! | `swatch` | the drawdown as pixels, near and far |
 //! | `colour` | how different two colours look |
 
 pub mod checks;
@@ -35,6 +36,7 @@ mod pattern;
 mod sett;
 mod source;
 mod structure;
+mod swatch;
 mod weaves;
 mod yarn;
 
@@ -57,6 +59,7 @@ pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };
+pub use swatch::{Colouring, SwatchWindow, swatch};
 pub use weaves::{
     BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
     double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,
