@@ -37,6 +37,7 @@ mod sett;
 mod source;
 mod structure;
 mod swatch;
+mod tiles;
 mod weaves;
 mod yarn;
 
