@@ -17,7 +17,9 @@
 //! | `document` | the design that holds all of these together |
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
+//! | `reach` | the floats where one looks |
 //! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
+//! | `swatch` | the drawdown as pixels, near and far |
 //! | `colour` | how different two colours look |
 
 pub mod checks;
@@ -32,9 +34,11 @@ mod lattice;
 pub mod library;
 mod maps;
 mod pattern;
+mod reach;
 mod sett;
 mod source;
 mod structure;
+mod swatch;
 mod tiles;
 mod weaves;
 mod yarn;
@@ -53,11 +57,13 @@ pub use library::{ColourOrders, LibraryWeave, library};
 pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
+pub use reach::{ClothBox, FaceFloat, float_through, long_floats_in};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
 pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };
+pub use swatch::{Colouring, SwatchWindow, swatch};
 pub use weaves::{
     BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
     double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,
