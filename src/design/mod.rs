@@ -14,6 +14,7 @@
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
+//! | `count`, `stripes` | yarn counts and orders of threads as weavers write them |
 //! | `document` | the design that holds all of these together |
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
@@ -25,6 +26,7 @@
 pub mod checks;
 mod colour;
 mod colourways;
+mod count;
 mod derive;
 mod document;
 mod draft;
@@ -37,6 +39,7 @@ mod pattern;
 mod reach;
 mod sett;
 mod source;
+mod stripes;
 mod structure;
 mod swatch;
 mod tiles;
@@ -45,6 +48,7 @@ mod yarn;
 
 pub use colour::{Lab, delta_e_00, lab};
 pub use colourways::{Colourway, ColourwayError, MAX_COLOURWAYS};
+pub use count::CountUnit;
 pub use derive::{DeriveError, Loom, derive, shafts_needed};
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
@@ -60,6 +64,7 @@ pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
 pub use reach::{ClothBox, FaceFloat, float_through, long_floats_in};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
 pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
+pub use stripes::{StripesError, read_stripes, write_stripes};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };

@@ -140,7 +140,7 @@ impl Engine for FirstSight {
         job.check()?;
         let (width, height) = (request.width as usize, request.height as usize);
         let mut rgba = vec![0u8; width * height * 4];
-        let straight = matches!(request.view, View::Face | View::Back);
+        let straight = request.eye.is_none() && matches!(request.view, View::Face | View::Back);
         let columns: Vec<(i64, f32)> = if straight {
             sight.across(&camera, width)
         } else {

@@ -21,7 +21,9 @@ pub use first_sight::{FirstSight, SightTables};
 pub use grid::{render_grid, scene_files};
 pub use picture::{Pass, Still, render, render_still, usual_width_mm};
 pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};
-pub use request::{EffectBase, EffectChoice, LightChoice, StillReport, StillRequest, Stop};
+pub use request::{
+    EffectBase, EffectChoice, Heading, LightChoice, StillReport, StillRequest, Stop,
+};
 pub use sheet::{AS_DESIGNED, Sheet, SheetPlace, render_sheet};
 
 use std::path::{Path, PathBuf};

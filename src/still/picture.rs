@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothSettings, HairLayer};
+use crate::cloth::ClothSettings;
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
@@ -19,6 +19,8 @@ use crate::render::{
     View,
 };
 
+/// Degrees across the picture where the eye has a direction of its own.
+const FIELD_OF_VIEW: f32 = 30.0;
 /// Samples a pixel when a request gives no way to stop.
 const USUAL_SPP: u32 = 64;
 
@@ -82,6 +84,7 @@ pub(super) fn settings(
 pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
     let rig = match choice {
         LightChoice::Preset(name) => LightRig::preset(name)?,
+        LightChoice::Sun(heading) => LightRig::sun(heading.azimuth, heading.elevation)?,
         LightChoice::Environment(path) => {
             LightRig::from_image(&path.display().to_string(), exr::read_environment(path)?)?
         }
@@ -120,7 +123,26 @@ pub(super) fn camera_at(
     }
     let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
     let target = Vec3::new(x, y, middle.z);
-    Ok(request.view.camera(target, width_mm, width, height))
+    Ok(match request.eye {
+        None => request.view.camera(target, width_mm, width, height),
+        Some(heading) => {
+            let from = heading.towards();
+            // The back is seen after turning the cloth over about its y axis.
+            let from = match request.view.turns_over() {
+                true => Vec3::new(-from.x, from.y, -from.z),
+                false => from,
+            };
+            Camera::perspective(
+                target,
+                from,
+                Vec3::Y,
+                FIELD_OF_VIEW,
+                width_mm,
+                width,
+                height,
+            )
+        }
+    })
 }
 
 /// Renders one picture; `on_pass` sees it after every pass.
@@ -140,12 +162,9 @@ pub fn render(
         settings,
         request,
     };
-    let (x, y) = in_view(&shot.camera, request.view);
+    let (x, y) = in_view(&shot.camera, request);
     let cloth = prepared.cloth().clone().with_window(x, y);
-    let hairs = prepared
-        .on("hairs")
-        .then(|| HairLayer::new(&cloth, prepared.hairy()))
-        .flatten();
+    let hairs = prepared.hair_layer(&cloth);
     let outcome = match &hairs {
         Some(hairs) => shot.expose(&Both(&cloth, hairs), job, on_pass)?,
         None => shot.expose(&cloth, job, on_pass)?,
@@ -268,12 +287,16 @@ impl Shot<'_> {
 }
 
 /// The stretch of cloth that a camera sees most of, mm in x and y.
-fn in_view(camera: &Camera, view: View) -> (std::ops::Range<f32>, std::ops::Range<f32>) {
+fn in_view(
+    camera: &Camera,
+    request: &StillRequest,
+) -> (std::ops::Range<f32>, std::ops::Range<f32>) {
     // A slanting view reaches further.
-    let reach = match view {
-        View::Face | View::Back | View::Close => 0.6,
-        View::Oblique => 1.2,
-        View::Grazing => 2.5,
+    let reach = match (request.eye, request.view) {
+        (Some(eye), _) => (0.8 / eye.towards().z).min(2.5),
+        (None, View::Face | View::Back | View::Close) => 0.6,
+        (None, View::Oblique) => 1.2,
+        (None, View::Grazing) => 2.5,
     };
     let target = camera.target();
     let across = reach * camera.width() as f32 / camera.pixels_per_mm();

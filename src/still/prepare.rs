@@ -1,6 +1,6 @@
 //! The cloth of a design made ready for pictures, and kept ready while it is edited.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use glam::Vec3;
@@ -8,9 +8,10 @@ use glam::Vec3;
 use super::StillError;
 use super::picture::{SwitchedEffects, settings};
 use super::request::StillRequest;
-use crate::cloth::{ClothError, ClothSettings, ClothVolume, YarnClasses, colour};
+use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
 use crate::design::{Design, WeavePattern, Yarn};
 use crate::exemplar::ExemplarStore;
+use crate::exemplar::hairs::HairPatch;
 use crate::job::Job;
 use crate::synthesis::Catalogue;
 use crate::yarn::YarnRecipe;
@@ -24,6 +25,8 @@ pub struct PreparedCloth {
     pub(super) seconds: Vec<(String, f64)>,
     pub(super) effects: SwitchedEffects,
     settings: ClothSettings,
+    /// Hairs, made when first looked at.
+    hairs: OnceLock<Option<Arc<HairPatch>>>,
 }
 
 /// A cloth that follows an edit.
@@ -69,14 +72,24 @@ fn stages(exemplars: f64, synthesis: f64) -> Vec<(String, f64)> {
 
 impl PreparedCloth {
     /// Whether an effect is simulated.
-    pub(super) fn on(&self, name: &str) -> bool {
+    fn on(&self, name: &str) -> bool {
         self.effects
             .iter()
             .any(|(effect, on)| effect == name && *on)
     }
 
+    /// The hairs over `cloth`, this cloth made ready for a view; `None` where there are
+    /// none or they are switched off.
+    pub(super) fn hair_layer<'c>(&self, cloth: &'c ClothVolume) -> Option<HairLayer<'c>> {
+        if !self.on("hairs") {
+            return None;
+        }
+        let patch = self.hairs.get_or_init(|| HairLayer::patch(cloth)).clone()?;
+        Some(HairLayer::of(cloth, patch, self.hairy()))
+    }
+
     /// Whether each yarn has hairs.
-    pub(super) fn hairy(&self) -> Vec<bool> {
+    fn hairy(&self) -> Vec<bool> {
         let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
         self.design
             .yarns()
@@ -132,6 +145,10 @@ impl PreparedCloth {
             return Ok(None);
         };
         let needed = cloth.unbuilt();
+        let hairs = match design.sett() == self.design.sett() {
+            true => self.hairs.clone(),
+            false => OnceLock::new(),
+        };
         let cloth = Self {
             design,
             drawdown: Arc::clone(drawdown),
@@ -140,6 +157,7 @@ impl PreparedCloth {
             seconds: stages(0.0, begun.elapsed().as_secs_f64()),
             effects,
             settings,
+            hairs,
         };
         Ok(Some(if needed.contains(&true) {
             Followed::Unfinished(UnfinishedCloth { cloth, needed })
@@ -223,5 +241,6 @@ pub fn prepare_woven(
         seconds: stages(exemplars, assigning + begun.elapsed().as_secs_f64()),
         effects,
         settings,
+        hairs: OnceLock::new(),
     })
 }

@@ -37,6 +37,8 @@ pub enum Action {
     PaintYarn(YarnId, Button),
     /// The region that region tools paint with: first or second button.
     PaintRegion(u16, Button),
+    /// Threads that an end and a pick may pass over before the draft marks the float.
+    Limits([u32; 2]),
     /// Bring a pane to the front.
     Show(Pane),
     /// Tell the person what happened and what was kept.

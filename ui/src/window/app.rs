@@ -190,6 +190,8 @@ impl App {
         let document = &session.document;
         let (draft, preview, panes) = (&mut self.draft, &mut self.preview, &mut self.panes);
         draft.set_hover(self.hover);
+        preview.marked = self.hover;
+        panes.section.follow(self.hover);
         Panel::left("tools")
             .exact_size(tokens::TOOLS_WIDTH)
             .resizable(false)

@@ -79,4 +79,18 @@ impl Laid {
             self.picks.start(pick + 1) as f32,
         ]
     }
+
+    /// As [`Self::crossing_mm`], in the repeat nearest to a point of the cloth.
+    pub fn near(&self, [x, y]: [f32; 2], end: i64, pick: i64) -> [f32; 4] {
+        let nearest = |middle: f32, thread: i64, threads: u32, places: &Positions| {
+            let threads = i64::from(threads.max(1));
+            let at = places.locate(f64::from(middle)).0;
+            let home = thread.rem_euclid(threads);
+            home + ((at - home) as f64 / threads as f64).round() as i64 * threads
+        };
+        self.crossing_mm(
+            nearest(x, end, self.design.ends(), &self.ends),
+            nearest(y, pick, self.design.picks(), &self.picks),
+        )
+    }
 }

@@ -10,6 +10,7 @@
 mod action;
 mod app;
 mod asking;
+mod cloth;
 mod cloth_pane;
 mod crossing;
 mod draft;

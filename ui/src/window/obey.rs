@@ -53,6 +53,7 @@ impl App {
                 Action::PaintRegion(region, button) => {
                     self.draft.regions[usize::from(button == Button::Second)] = region;
                 }
+                Action::Limits(limits) => self.draft.limits = limits,
                 Action::Show(pane) => self.layout.bring(pane),
                 Action::Say(grade, text, kept) => self.say(grade, text, kept),
             }

@@ -1,23 +1,30 @@
 //! The cloth pane: what is looked at and how, what the worker is asked for, and what it
 //! says while it works.
 
-use egui::{Frame, Id, Rect, RichText, pos2, vec2};
+use egui::{Frame, Id, PointerButton, Rect, RichText, pos2, vec2};
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::render::View;
-use pickglass::still::{EffectChoice, LightChoice, StillRequest, usual_width_mm};
+use pickglass::still::{EffectChoice, Heading, LightChoice, StillRequest, usual_width_mm};
 
 use super::action::Action;
+use super::cloth::bar::{self, Says};
+use super::cloth::compare::Compare;
+use super::cloth::glass::{self, Glass};
+use super::cloth::lamp;
 use super::cloth_pane::ClothPane;
 use super::laid::Laid;
 use super::toasts::Grade;
 use super::view::ClothView;
-use super::worker::{Building, ClothWorker, Phase, PreviewRequest};
+use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest};
 use crate::command_table::Command;
 use crate::tokens::{self, Palette};
 
 /// One step of the zoom keys.
 const ZOOM_STEP: f32 = 1.25;
+/// Degrees that the eye turns for a point of dragging, and how low it may go.
+const TURN_A_POINT: f32 = 0.4;
+const LOWEST_EYE: f32 = 12.0;
 /// Millimetres of cloth a point at actual size, on a screen of 96 points an inch.
 const ACTUAL_SIZE: f32 = 25.4 / 96.0;
 /// A preview has at most this many pixels; beyond, it is drawn smaller and stretched.
@@ -47,6 +54,15 @@ pub struct Preview {
     pub light: LightChoice,
     pub paused: bool,
     pub pane: ClothPane,
+    /// The crossing that is marked on the cloth, as in every view.
+    pub marked: Option<(i64, i64)>,
+    /// Millimetres a point of this screen.
+    pub mm_per_point: f32,
+    /// Where the eye was turned to; `None` = where the view looks from.
+    eye: Option<[f32; 2]>,
+    glass: Glass,
+    compare: Option<Compare>,
+    calibrating: bool,
     /// `None` until the pane's size is known, or when the view is to be set anew.
     cloth_view: Option<ClothView>,
     /// Whether a view set anew shows the whole repeat, or the view's usual width.
@@ -73,6 +89,12 @@ impl Preview {
             light: LightChoice::default(),
             paused: false,
             pane: ClothPane::default(),
+            marked: None,
+            mm_per_point: ACTUAL_SIZE,
+            eye: None,
+            glass: Glass::default(),
+            compare: None,
+            calibrating: false,
             cloth_view: None,
             fit: false,
             effects: settings.effects,
@@ -90,7 +112,8 @@ impl Preview {
     /// Forgets what was seen: another document is open.
     pub fn forget(&mut self) {
         self.cloth_view = None;
-        self.pane.shown = None;
+        self.pane.forget();
+        self.compare = None;
         self.asked = None;
         self.laid = None;
     }
@@ -132,6 +155,11 @@ impl Preview {
         {
             self.pane.take(ctx, picture);
         }
+        if let Some(picture) = self.worker.take_glass()
+            && self.glass.is_held()
+        {
+            self.glass.take(ctx, picture);
+        }
         if let Some(error) = self.worker.take_failure() {
             failed(error, "The coarse cloth is still shown.");
         }
@@ -148,6 +176,7 @@ impl Preview {
         match command {
             Command::Look(view) => {
                 self.view = view;
+                self.eye = None;
                 self.fit = false;
                 self.cloth_view = None;
             }
@@ -158,7 +187,10 @@ impl Preview {
                 self.fit = true;
                 self.cloth_view = None;
             }
-            Command::ActualSize => self.rescale(|view| view.mm_per_point = ACTUAL_SIZE),
+            Command::ActualSize => {
+                let actual = self.mm_per_point;
+                self.rescale(|view| view.mm_per_point = actual);
+            }
             Command::ZoomIn => self.zoom(ZOOM_STEP),
             Command::ZoomOut => self.zoom(1.0 / ZOOM_STEP),
             Command::Pause if self.paused => self.resume(),
@@ -201,26 +233,95 @@ impl Preview {
             None => self.initial_view(pane, &laid),
         };
         let description = format!("Cloth of {}", laid.design.name);
-        let response = self.pane.show(ui, &mut view, &description);
+        let straight = self.eye.is_none() && matches!(self.view, View::Face | View::Back);
+        let marked = (self.marked.filter(|_| straight))
+            .map(|(end, pick)| laid.near(view.centre_mm, end, pick));
+        let response = self.pane.show(ui, &mut view, &description, marked);
+        self.turn(&response);
         self.in_use = response.hovered() || response.has_focus();
         self.widget = Some(response.id);
         self.cloth_view = Some(view);
-        self.ask_worker(
-            pane,
-            ui.ctx().pixels_per_point(),
-            &laid,
-            document.revision(),
-        );
+        let asked = self.asked.as_ref().map(|(_, still)| still);
+        match self.glass.hold(ui, &response, pane, view, asked) {
+            Some(glass::Wish::Look(still)) => self.ask(Aim::Glass, *still, &laid),
+            Some(glass::Wish::Leave) => self.asked = None,
+            None => {}
+        }
+        if !self.glass.is_held() {
+            self.ask_worker(
+                pane,
+                ui.ctx().pixels_per_point(),
+                &laid,
+                document.revision(),
+            );
+        }
         if self.pane.shown.is_none() {
             self.busy_ui(ui, pane);
+        } else {
+            self.over_ui(ui, pane, view);
         }
         // Only the straight views show where a crossing lies.
-        let straight = matches!(self.view, View::Face | View::Back);
         if let Some(at) = response.hover_pos().filter(|_| straight) {
             let crossing = laid.crossing_at(view.to_cloth(pane, at));
             actions.push(Action::Hover(Some(crossing)));
         }
         self.laid = Some(laid);
+    }
+
+    /// The right button turns the eye round the cloth.
+    fn turn(&mut self, response: &egui::Response) {
+        if !response.dragged_by(PointerButton::Secondary) {
+            return;
+        }
+        let delta = response.drag_delta() * TURN_A_POINT;
+        let [azimuth, elevation] = self.eye.unwrap_or([-90.0, 90.0]);
+        self.eye = Some([
+            (azimuth - delta.x + 180.0).rem_euclid(360.0) - 180.0,
+            (elevation - delta.y).clamp(LOWEST_EYE, 90.0),
+        ]);
+    }
+
+    /// What lies over the picture.
+    fn over_ui(&mut self, ui: &mut egui::Ui, pane: Rect, view: ClothView) {
+        if let Some(compare) = &mut self.compare {
+            compare.show(ui, pane, view);
+        }
+        let lamp_at = pane.right_bottom() - vec2(1.0, 1.0) * (lamp::RADIUS + tokens::PAD);
+        if pane.size().min_elem() > 6.0 * lamp::RADIUS {
+            lamp::show(ui, lamp_at, &mut self.light);
+        }
+        let says = Says {
+            back: self.view.turns_over(),
+            slanting: self.eye.is_some() || !matches!(self.view, View::Face | View::Back),
+            kept: self.compare.is_some(),
+            near: self.in_use,
+        };
+        match bar::show(ui, pane, &says) {
+            Some(bar::Wish::TurnOver) => {
+                let back = self.view.turns_over();
+                self.view = if back { View::Face } else { View::Back };
+                if let Some(view) = &mut self.cloth_view {
+                    view.mirrored = !back;
+                }
+            }
+            Some(bar::Wish::Straighten) => {
+                self.eye = None;
+                if !self.view.turns_over() {
+                    self.view = View::Face;
+                }
+            }
+            Some(bar::Wish::Keep) => {
+                self.compare = (self.pane.shown.as_ref())
+                    .map(|shown| Compare::keep(ui.ctx(), shown.still.clone(), &shown.image));
+            }
+            Some(bar::Wish::Forget) => self.compare = None,
+            Some(bar::Wish::Calibrate) => self.calibrating = true,
+            None => {}
+        }
+        if self.calibrating {
+            self.calibrating = bar::calibrate(ui.ctx(), &mut self.mm_per_point);
+        }
+        self.glass.show(ui, pane, view);
     }
 
     fn initial_view(&self, pane: Rect, laid: &Laid) -> ClothView {
@@ -247,6 +348,10 @@ impl Preview {
             width: ((pixels.x * shrink) as u32).max(1),
             height: ((pixels.y * shrink) as u32).max(1),
             view: self.view,
+            eye: self.eye.map(|[azimuth, elevation]| Heading {
+                azimuth: azimuth.round() as i16,
+                elevation: elevation.round() as i16,
+            }),
             width_mm: Some(view.width_mm(pane)),
             centre_mm: Some(view.centre_mm),
             light: self.light.clone(),
@@ -264,10 +369,16 @@ impl Preview {
             return;
         }
         self.generation += 1;
+        self.ask(Aim::Pane, still, laid);
+    }
+
+    fn ask(&mut self, aim: Aim, still: StillRequest, laid: &Laid) {
         self.reported_failure = None;
         self.worker.request(PreviewRequest {
             generation: self.generation,
+            aim,
             design: std::sync::Arc::clone(&laid.design),
+            drawdown: std::sync::Arc::clone(&laid.drawdown),
             still,
         });
     }
@@ -339,7 +450,7 @@ impl Preview {
     pub fn freeze(&mut self) {
         self.pause();
         self.generation += 1;
-        self.pane.shown = None;
+        self.pane.forget();
         self.asked = None;
     }
 }

@@ -261,9 +261,8 @@ fn enlarged(pass: &Pass<'_>, still: &StillRequest) -> Option<Vec<u8>> {
     for (below, above, v) in rows {
         for &(left, right, u) in &columns {
             for channel in 0..4 {
-                let at = |x: usize, y: usize| {
-                    u32::from(pass.rgba[(y * from_width + x) * 4 + channel])
-                };
+                let at =
+                    |x: usize, y: usize| u32::from(pass.rgba[(y * from_width + x) * 4 + channel]);
                 let low = at(left, below) * (256 - u) + at(right, below) * u;
                 let high = at(left, above) * (256 - u) + at(right, above) * u;
                 rgba.push(((low * (256 - v) + high * v) >> 16) as u8);
@@ -296,7 +295,10 @@ mod tests {
         let large = enlarged(&pass, &still).expect("a picture");
         assert_eq!(large.len(), 8 * 3 * 4);
         let reds: Vec<u8> = large[..32].chunks(4).map(|pixel| pixel[0]).collect();
-        assert!(reds.is_sorted() && reds[0] == 10 && reds[7] == 210, "{reds:?}");
+        assert!(
+            reds.is_sorted() && reds[0] == 10 && reds[7] == 210,
+            "{reds:?}"
+        );
         assert!(large.chunks(4).all(|pixel| pixel[1..] == [20, 30, 255]));
     }
 }

@@ -488,7 +488,9 @@ mod tests {
         let mut edited = WeavePattern::clone(&first.drawdown);
         edited.set(1, 0, !edited.get(1, 0));
         let weave = pickglass::design::Structure::Pattern(edited.clone());
-        let changed = Design::clone(&design).with_structure(weave).expect("a design");
+        let changed = Design::clone(&design)
+            .with_structure(weave)
+            .expect("a design");
         worker.request(PreviewRequest {
             generation: 2,
             design: Arc::new(changed),
@@ -497,7 +499,9 @@ mod tests {
         });
         let mut seen = None;
         assert!(wait_for(&worker, |worker| {
-            seen = worker.take_picture().filter(|picture| picture.generation == 2);
+            seen = worker
+                .take_picture()
+                .filter(|picture| picture.generation == 2);
             seen.is_some()
         }));
         let seen = seen.expect("a picture");
