@@ -14,6 +14,8 @@
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
+//! | `stripes` | the order of a direction's yarns as it is typed ("12 navy 4 cream") |
+//! | `tiles` | what patterns and grids are kept in: tiles that clones share |
 //! | `document` | the design that holds all of these together |
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
@@ -34,6 +36,7 @@ mod maps;
 mod pattern;
 mod sett;
 mod source;
+pub mod stripes;
 mod structure;
 mod tiles;
 mod weaves;
