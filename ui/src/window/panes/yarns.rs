@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{DragValue, RichText, ScrollArea, TextEdit};
 use pickglass::design::checks::{Interlacing, YarnNeed, take_up, yarn_needs};
-use pickglass::design::{CountUnit, Design, Family, Yarn, YarnId, read_stripes, write_stripes};
+use pickglass::design::{CountUnit, Design, Family, Yarn, YarnId, stripes};
 use pickglass::edit::{Direction, Document, Edit};
 
 use super::later::Later;
@@ -322,7 +322,7 @@ impl Yarns {
         let field = ui.add(field).labelled_by(label.id);
         if !field.has_focus() && !field.lost_focus() && stripes.of != Some(document.revision()) {
             stripes.text = if order.len() <= MOST_WRITTEN {
-                write_stripes(order, design.yarns())
+                stripes::write(order, design.yarns())
             } else {
                 String::new()
             };
@@ -330,7 +330,7 @@ impl Yarns {
             stripes.problem = None;
         }
         if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-            match read_stripes(&stripes.text, design.yarns()) {
+            match stripes::parse(&stripes.text, design.yarns()) {
                 Ok(order) => {
                     stripes.problem = None;
                     actions.push(Action::edit(Edit::SetOrder { direction, order }));
