@@ -12,6 +12,8 @@ mod build;
 pub mod colour;
 pub mod expected;
 mod export;
+mod face_table;
+mod follow;
 mod hair_cells;
 mod hairs;
 mod lookup;
@@ -20,5 +22,6 @@ mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
 pub use export::{ClothWindow, Part, Region, WindowError};
+pub use face_table::{FaceTable, TEXELS, Texel, neighbourhood};
 pub use hairs::{HairLayer, HairWalk};
 pub use walk::ClothWalk;

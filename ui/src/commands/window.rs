@@ -21,7 +21,7 @@ pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
     let opened = Opened::argument(argument, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let name = opened.name().to_owned();
-    match window::run(opened.clone(), args.smoke_frames) {
+    match window::run(Some(opened.clone()), args.smoke_frames) {
         Ok(()) if args.json => out::say_json(&json!({ "opened": name })),
         Ok(()) => Ok(()),
         Err(NoWindow::Unavailable(reason)) => without_window(&opened, &reason, args.json),

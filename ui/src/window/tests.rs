@@ -10,14 +10,15 @@ use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::WgpuTestRenderer;
 use egui_kittest::{Harness, HarnessBuilder, SnapshotOptions};
 
-use super::app::{PreviewSettings, Viewer};
+use super::app::{App, AppOptions};
+use super::preview::PreviewSettings;
 use crate::opened::Opened;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::still::{EffectBase, EffectChoice};
 
-type Window = Harness<'static, Viewer>;
+type Window = Harness<'static, App>;
 
-fn builder() -> HarnessBuilder<Viewer> {
+fn builder() -> HarnessBuilder<App> {
     Harness::builder()
         .with_size([960.0, 640.0])
         .with_theme(egui::Theme::Dark)
@@ -36,9 +37,16 @@ fn crude() -> PreviewSettings {
     }
 }
 
-fn build(builder: HarnessBuilder<Viewer>, design: Option<&str>) -> Window {
+fn options() -> AppOptions {
+    AppOptions {
+        preview: crude(),
+        ..AppOptions::default()
+    }
+}
+
+fn build(builder: HarnessBuilder<App>, design: Option<&str>) -> Window {
     let opened = design.map(|name| Opened::preset(name).expect("a preset"));
-    builder.build_eframe(|cc| Viewer::new(&cc.egui_ctx, opened, crude()).expect("a worker"))
+    builder.build_eframe(|cc| App::new(&cc.egui_ctx, opened, options()).expect("a worker"))
 }
 
 /// Lets the window and its threads go on until `done`.
@@ -69,7 +77,7 @@ fn says(window: &Window, part: &str) -> bool {
 fn a_design_is_shown_and_refines() {
     let mut window = build(builder(), Some("oxford"));
     wait_for(&mut window, "a full picture", |window| {
-        window.state().has_full_picture()
+        window.state().preview.has_full_picture()
     });
     assert!(shows(&window, "Cloth of Oxford"));
     assert!(shows(&window, "Drawdown of Oxford"));
@@ -98,7 +106,8 @@ fn the_menus_open_presets_and_change_the_view() {
         .expect("a menu item")
         .click();
     wait_for(&mut window, "the back", |window| {
-        window.state().asked_view() == Some(pickglass::render::View::Back)
+        window.state().preview.asked().map(|asked| asked.view)
+            == Some(pickglass::render::View::Back)
     });
 }
 
@@ -187,9 +196,9 @@ fn a_dropped_file_opens() {
 fn dragging_moves_the_cloth_and_the_wheel_zooms_at_the_pointer() {
     let mut window = build(builder(), Some("oxford"));
     window.step();
-    let before = window.state().cloth_view().expect("a view");
+    let before = window.state().preview.cloth_view().expect("a view");
     wait_for(&mut window, "a picture", |window| {
-        window.state().has_picture()
+        window.state().preview.pane.shown.is_some()
     });
     let start = pos2(600.0, 300.0);
     window.hover_at(start);
@@ -200,7 +209,7 @@ fn dragging_moves_the_cloth_and_the_wheel_zooms_at_the_pointer() {
     window.step();
     window.drop_at(start + egui::vec2(50.0, 20.0));
     window.step();
-    let after = window.state().cloth_view().expect("a view");
+    let after = window.state().preview.cloth_view().expect("a view");
     let moved = before.centre_mm[0] - after.centre_mm[0];
     assert!((moved / before.mm_per_point - 50.0).abs() < 0.5, "{moved}");
 
@@ -214,7 +223,15 @@ fn dragging_moves_the_cloth_and_the_wheel_zooms_at_the_pointer() {
         modifiers: Modifiers::NONE,
     });
     window.run_steps(30);
-    assert!(window.state().cloth_view().expect("a view").mm_per_point < after.mm_per_point);
+    assert!(
+        window
+            .state()
+            .preview
+            .cloth_view()
+            .expect("a view")
+            .mm_per_point
+            < after.mm_per_point
+    );
 }
 
 #[test]
@@ -227,7 +244,7 @@ fn stopping_says_so_and_can_be_undone() {
     });
     window.key_press(Key::P);
     wait_for(&mut window, "a picture", |window| {
-        window.state().has_picture()
+        window.state().preview.pane.shown.is_some()
     });
 }
 
@@ -237,9 +254,13 @@ fn the_export_form_renders_into_a_file() {
     let path = folder.path().join("out.png");
     let mut window = build(builder(), Some("oxford"));
     wait_for(&mut window, "a picture", |window| {
-        window.state().has_picture()
+        window.state().preview.pane.shown.is_some()
     });
-    window.state_mut().set_export_defaults(64, 0.1, &path);
+    window.state_mut().export.defaults = super::export::Defaults {
+        width: 64,
+        seconds: 0.1,
+        path: Some(path.clone()),
+    };
     window.key_press_modifiers(Modifiers::COMMAND, Key::E);
     window.run_steps(3);
     window.get_by_label("Render").click();
@@ -285,7 +306,7 @@ fn picture_of_a_design() {
     };
     let mut window = build(builder().renderer(renderer), Some("herringbone"));
     // The cloth itself is another test's business: stop it before it is drawn.
-    window.state_mut().pause();
+    window.state_mut().preview.freeze();
     window.run_steps(5);
     window.snapshot_options("herringbone", &tolerance());
 }
