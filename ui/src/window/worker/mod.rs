@@ -374,7 +374,7 @@ fn serve(
     lower_shield(desk)?;
     let (cloth, full) = cloth_of(desk, request, job, coarse)?;
     desk.set_phase(Phase::Refining);
-    let refine = || {
+    let mut refine = || {
         let mut level = first.0;
         let mut pass_seconds = drawing.trace(&*cloth, full, level, 0.0, screen)?;
         first.learn(pass_seconds * 1e3);
