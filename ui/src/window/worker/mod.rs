@@ -44,6 +44,8 @@ pub struct PreviewRequest {
     pub drawdown: Arc<WeavePattern>,
     /// At full size, with `centre_mm` and `width_mm` given.
     pub still: StillRequest,
+    /// Nothing is on the screen: whatever was sent before is to be shown anew.
+    pub blank: bool,
 }
 
 impl PreviewRequest {
@@ -417,6 +419,7 @@ mod tests {
             design: Arc::clone(design),
             drawdown: Arc::new(design.weave()),
             still,
+            blank: false,
         }
     }
 
