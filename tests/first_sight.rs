@@ -38,6 +38,9 @@ fn picture(engine: &dyn Engine, request: &StillRequest, name: &str) -> Vec<u8> {
     engine
         .draw(request, &Job::new(), &mut |pass| {
             rgba = pass.rgba.to_vec();
+            if engine.name() == "first sight" {
+                println!("{name}: first sight in {:.1} ms", pass.seconds * 1e3);
+            }
         })
         .unwrap();
     if let Some(folder) = std::env::var_os("PICKGLASS_PICTURES") {
@@ -141,6 +144,31 @@ fn every_view_and_wild_places_give_a_picture() {
                 let rgba = picture(&sight, &request, "wild");
                 assert_eq!(rgba.len(), 31 * 17 * 4);
             }
+        }
+    }
+}
+
+#[test]
+fn a_large_jacquard_is_seen_whole() {
+    // 900 × 1500 crossings of satins, seen whole and from near.
+    let weave = WeavePattern::from_fn(900, 1500, |end, pick| {
+        let warp_faced = ((end / 90) + (pick / 150)) % 2 == 0;
+        ((end * 3 + 8 - pick % 8) % 8 == 0) != warp_faced
+    });
+    let silk = design("silk-satin");
+    let large = Design::clone(&silk)
+        .with_structure(pickglass::design::Structure::Pattern(weave))
+        .unwrap();
+    let sight = first(&Arc::new(large.clone()));
+    let mut request = request(View::Face, "day");
+    (request.width, request.height) = (900, 700);
+    for width_mm in [40.0, large.end_positions().repeat_mm() as f32] {
+        request.width_mm = Some(width_mm);
+        // The first picture makes the tables, the second has them.
+        for _ in 0..2 {
+            let rgba = picture(&sight, &request, &format!("900 × 1500, {width_mm:.0} mm"));
+            let covered = rgba.chunks(4).filter(|pixel| pixel[3] > 200).count();
+            assert!(covered > 900 * 700 * 9 / 10, "{covered}");
         }
     }
 }

@@ -41,8 +41,8 @@ pub fn reed(design: &Design, take_up: f64, ends_a_dent: u32, shrinkage: [f64; 2]
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
-    use crate::design::{Sett, Structure, WeavePattern, YarnMaps};
     use crate::design::{Family, Srgb, Yarn, YarnId};
+    use crate::design::{Sett, Structure, WeavePattern, YarnMaps};
 
     #[test]
     fn a_reed_is_what_a_weaver_reckons() {

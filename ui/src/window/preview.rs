@@ -374,12 +374,17 @@ impl Preview {
 
     fn ask(&mut self, aim: Aim, still: StillRequest, laid: &Laid) {
         self.reported_failure = None;
+        let blank = match aim {
+            Aim::Pane => self.pane.shown.is_none(),
+            Aim::Glass => !self.glass.has_picture(),
+        };
         self.worker.request(PreviewRequest {
             generation: self.generation,
             aim,
             design: std::sync::Arc::clone(&laid.design),
             drawdown: std::sync::Arc::clone(&laid.drawdown),
             still,
+            blank,
         });
     }
 
@@ -436,6 +441,11 @@ fn plate(ui: &mut egui::Ui, pane: Rect, content: impl FnOnce(&mut egui::Ui)) {
 
 #[cfg(test)]
 impl Preview {
+    /// Whether the pick glass shows a picture.
+    pub fn glass_has_picture(&self) -> bool {
+        self.glass.has_picture()
+    }
+
     /// Whether the picture is of full size and from the full exemplars.
     pub fn has_full_picture(&self) -> bool {
         let full = |shown: &super::cloth_pane::Shown| shown.full_size && shown.full_cloth;

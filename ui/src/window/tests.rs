@@ -271,7 +271,7 @@ fn the_export_form_renders_into_a_file() {
 
 /// A renderer of snapshots. Without an adapter the test is skipped, or fails where
 /// goldens are required.
-fn renderer(test: &str) -> Option<WgpuTestRenderer> {
+pub fn renderer(test: &str) -> Option<WgpuTestRenderer> {
     let renderer = std::panic::catch_unwind(WgpuTestRenderer::new).ok();
     if renderer.is_none() {
         let required = std::env::var_os("GOLDEN_REQUIRED").is_some();

@@ -47,7 +47,7 @@ impl Compare {
             painter.image(self.texture.id(), rect, whole, Color32::WHITE);
         }
         let grip = Rect::from_center_size(pos2(x, pane.center().y), vec2(HANDLE, pane.height()));
-        let id = ui.id().with("compare");
+        let id = ui.scope_id().with("compare");
         let response = ui.interact(grip, id, Sense::click_and_drag());
         response.widget_info(|| {
             egui::WidgetInfo::slider(true, f64::from(self.border), "Border to the kept picture")

@@ -145,7 +145,6 @@ impl Glass {
     }
 
     /// Whether a picture is in it.
-    #[cfg(test)]
     pub fn has_picture(&self) -> bool {
         self.shown.is_some()
     }

@@ -1,6 +1,6 @@
 //! The lamp: a small dome over the cloth on which one drags the light about.
 
-use egui::{Key, Pos2, Rect, Sense, Stroke, pos2, vec2};
+use egui::{Key, Pos2, Rect, Sense, Stroke, vec2};
 use pickglass::still::{Heading, LightChoice};
 
 use crate::tokens::{self, Palette};
@@ -41,7 +41,7 @@ pub fn show(ui: &mut egui::Ui, middle: Pos2, light: &mut LightChoice) {
         _ => USUAL,
     };
     let rect = Rect::from_center_size(middle, vec2(2.0, 2.0) * RADIUS);
-    let response = ui.interact(rect, ui.id().with("lamp"), Sense::click_and_drag());
+    let response = ui.interact(rect, ui.scope_id().with("lamp"), Sense::click_and_drag());
     let spoken = format!("Light from {}°, {}° high", now.azimuth, now.elevation);
     response.widget_info(|| {
         egui::WidgetInfo::slider(true, f64::from(now.azimuth), format!("Lamp: {spoken}"))
@@ -95,6 +95,7 @@ pub fn show(ui: &mut egui::Ui, middle: Pos2, light: &mut LightChoice) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui::pos2;
 
     #[test]
     fn the_lamp_stands_where_it_was_put() {

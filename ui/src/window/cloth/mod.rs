@@ -4,3 +4,5 @@ pub mod bar;
 pub mod compare;
 pub mod glass;
 pub mod lamp;
+#[cfg(test)]
+mod tests;

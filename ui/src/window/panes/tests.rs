@@ -17,6 +17,15 @@ struct Bench {
 }
 
 fn bench(preset: &str, pane: Pane) -> Harness<'static, Bench> {
+    let builder = Harness::builder().with_size([720.0, 520.0]);
+    build(builder, preset, pane)
+}
+
+fn build(
+    builder: egui_kittest::HarnessBuilder<Bench>,
+    preset: &str,
+    pane: Pane,
+) -> Harness<'static, Bench> {
     let design = presets::design(preset)
         .expect("a preset")
         .expect("a design");
@@ -26,7 +35,7 @@ fn bench(preset: &str, pane: Pane) -> Harness<'static, Bench> {
         pane,
         asked: Vec::new(),
     };
-    Harness::builder().with_size([720.0, 520.0]).build_ui_state(
+    builder.build_ui_state(
         |ui, bench: &mut Bench| {
             let mut actions = Vec::new();
             bench
@@ -69,7 +78,6 @@ fn every_pane_shows_every_preset() {
 fn floats_are_listed_and_looked_at() {
     let mut harness = bench("silk-satin", Pane::Floats);
     wait(&mut harness, "No float is longer");
-    harness.get_by_label("Ends over").scroll_to_me();
     harness.state_mut().panes.floats = super::floats::Floats::with_limits([2, 2]);
     wait(&mut harness, "long floats");
     let first = harness
@@ -210,4 +218,43 @@ fn the_cut_follows_the_pointer() {
             .next()
             .is_some()
     );
+}
+
+/// Every pane in both themes and at two densities. Where `PICKGLASS_PICTURES` names a
+/// folder, the pictures are kept there.
+#[test]
+fn every_pane_draws_itself_in_both_themes() {
+    let folder = std::env::var_os("PICKGLASS_PICTURES");
+    for (theme, word) in [(egui::Theme::Dark, "dark"), (egui::Theme::Light, "light")] {
+        for density in [1.0, 2.0] {
+            for pane in Pane::ALL {
+                // These two are views of their own.
+                if matches!(pane, Pane::Draft | Pane::Cloth) {
+                    continue;
+                }
+                let Some(renderer) = crate::window::tests::renderer("pictures of panes") else {
+                    return;
+                };
+                let builder = Harness::builder()
+                    .with_size([720.0, 320.0])
+                    .with_theme(theme)
+                    .with_pixels_per_point(density)
+                    .renderer(renderer);
+                let mut harness = build(builder, "damask", pane);
+                crate::tokens::apply(&harness.ctx);
+                for _ in 0..20 {
+                    harness.step();
+                    std::thread::sleep(std::time::Duration::from_millis(10));
+                }
+                let picture = harness.render().expect("a picture");
+                let first = picture.get_pixel(2, 2);
+                let other = picture.pixels().filter(|pixel| *pixel != first).count();
+                assert!(other > 100, "{pane:?} {word} ×{density}: nothing is drawn");
+                if let Some(folder) = &folder {
+                    let name = format!("{pane:?} {word} {density}.png");
+                    let _ = picture.save(std::path::Path::new(folder).join(name));
+                }
+            }
+        }
+    }
 }

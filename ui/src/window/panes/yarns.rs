@@ -184,14 +184,16 @@ impl Yarns {
                 let label = ui.label("Count");
                 let tex = f64::from(yarn.linear_density());
                 let mut count = self.unit.of_tex(tex, self.plies);
+                let speed = 0.01 * count.abs().max(0.1);
                 let field = DragValue::new(&mut count)
-                    .speed(0.01 * count.abs().max(0.1))
+                    .speed(speed)
                     .suffix(format!(" {}", self.unit.name()));
                 let field = ui.add(field).labelled_by(label.id);
                 self.note(ui, &field, "yarn count", actions);
                 let tex = self.unit.to_tex(count, self.plies);
                 if field.changed() && (0.01..=1e6).contains(&tex) {
-                    changed = changed.with_tex(tex as f32);
+                    changed.tex = Some(tex as f32);
+                    changed.diameter_mm = None;
                 }
                 ui.end_row();
                 let label = ui.label("Diameter");

@@ -73,7 +73,7 @@ impl Drawing<'_> {
         screen: &mut Option<OnScreen>,
     ) -> Result<(), StillError> {
         let request = self.request;
-        let known = screen.take();
+        let known = screen.take().filter(|_| !request.blank);
         if let Some(known) = known.as_ref().filter(|known| known.same_place(request))
             && known.same_cloth(request)
         {

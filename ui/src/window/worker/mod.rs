@@ -44,6 +44,8 @@ pub struct PreviewRequest {
     pub drawdown: Arc<WeavePattern>,
     /// At full size, with `centre_mm` and `width_mm` given.
     pub still: StillRequest,
+    /// Nothing is on the screen: whatever was sent before is to be shown anew.
+    pub blank: bool,
 }
 
 impl PreviewRequest {
@@ -374,7 +376,7 @@ fn serve(
     lower_shield(desk)?;
     let (cloth, full) = cloth_of(desk, request, job, coarse)?;
     desk.set_phase(Phase::Refining);
-    let refine = || {
+    let mut refine = || {
         let mut level = first.0;
         let mut pass_seconds = drawing.trace(&*cloth, full, level, 0.0, screen)?;
         first.learn(pass_seconds * 1e3);
@@ -417,6 +419,7 @@ mod tests {
             design: Arc::clone(design),
             drawdown: Arc::new(design.weave()),
             still,
+            blank: false,
         }
     }
 
