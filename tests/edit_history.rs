@@ -17,7 +17,8 @@ use pickglass::hash::mix;
 
 const ENDS: u32 = 5120;
 const PICKS: u32 = 6300;
-const STROKES: usize = 1000;
+/// Some lie where they change nothing, and are no entries.
+const STROKES: usize = 1200;
 
 /// Two weaves in diamonds, and stripes of two yarns.
 fn design() -> Design {
@@ -115,8 +116,8 @@ fn a_thousand_strokes_are_undone_and_redone() {
         1e3 * longest
     );
     assert!(
-        document.entries().len() > STROKES * 9 / 10,
-        "strokes that changed nothing"
+        document.entries().len() > 1000,
+        "too many that changed nothing"
     );
     assert_eq!(document.entries()[0].name(), "opened");
     assert!(counted <= HISTORY_BYTES);

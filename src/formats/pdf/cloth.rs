@@ -57,11 +57,13 @@ pub(super) fn drawn(
         (ends, picks) = (across, along);
     }
     let mut number = 0;
-    for row in (0..rows).rev() {
+    // From the top left, so that the last sheets take what is left over.
+    for row in 0..rows {
         for column in 0..columns {
             number += 1;
-            let first = (column * across, row * along);
-            let size = (across.min(ends - first.0), along.min(picks - first.1));
+            let left = column * across;
+            let size = (across.min(ends - left), along.min(picks - row * along));
+            let first = (left, picks - row * along - size.1);
             let step = (size.0 as f32 * size.1 as f32 / MOST_PIXELS)
                 .sqrt()
                 .ceil()
@@ -118,6 +120,9 @@ pub(super) fn picture(
     }
     let height = picture.pixels.len() / row_bytes;
     let [wide, high] = room(book);
+    if pixel > wide.min(high) {
+        return Err(PdfError::Picture("has pixels larger than a page"));
+    }
     let fit = |room: f32| ((room / pixel) as usize).max(1);
     let (across, along) = (fit(wide), fit(high));
     let width = picture.width as usize;
