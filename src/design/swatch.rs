@@ -13,7 +13,7 @@ use super::structure::{Region, Structure};
 use super::yarn::{Srgb, YarnId};
 
 /// What a crossing shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colouring {
     /// The colour of the yarn on top.
     Yarns,

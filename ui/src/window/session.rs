@@ -28,7 +28,7 @@ impl Session {
     pub fn of(opened: &Opened, path: Option<PathBuf>) -> Self {
         Self {
             document: Document::new(Design::clone(&opened.design)),
-            path: path.filter(own_format),
+            path: path.filter(|path| own_format(path)),
         }
     }
 
@@ -36,7 +36,7 @@ impl Session {
     pub fn unsaved(design: Design, path: Option<PathBuf>) -> Self {
         Self {
             document: Document::unsaved(design),
-            path: path.filter(own_format),
+            path: path.filter(|path| own_format(path)),
         }
     }
 
@@ -75,7 +75,7 @@ impl Session {
 }
 
 /// Whether a file is a design document, which holds all of a design.
-fn own_format(path: &PathBuf) -> bool {
+fn own_format(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "ron")
 }
 

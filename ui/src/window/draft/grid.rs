@@ -164,7 +164,7 @@ impl CellGrid {
     }
 
     /// Pixels from the pane's middle, y upwards: what [`Look::zoom`] takes.
-    pub fn from_middle(&self, at: Pos2) -> [f64; 2] {
+    pub fn off_middle(&self, at: Pos2) -> [f64; 2] {
         let offset = at - self.pane.center();
         [
             f64::from(offset.x) * self.density,
@@ -227,7 +227,7 @@ mod tests {
         for steps in [3, 4, -2, 5] {
             let grid = CellGrid::new(pane(), &look, 1.0);
             let before = grid.crossing(at);
-            look.zoom(steps, grid.from_middle(at));
+            look.zoom(steps, grid.off_middle(at));
             let after = CellGrid::new(pane(), &look, 1.0).crossing(at);
             // The origin is rounded to a pixel, which may move it by one crossing.
             assert!((before.0 - after.0).abs() <= 1 && (before.1 - after.1).abs() <= 1);

@@ -9,7 +9,7 @@ use super::DraftPane;
 use super::areas::Areas;
 use super::bands::{self, Band};
 use super::grid::CellGrid;
-use super::zone::{Cell, Touch};
+use super::zone::{Cell, Field, Touch};
 use crate::command_table::{Command, Tool, row_of};
 
 /// Points of a wheel's turn that make one step of zoom.
@@ -44,12 +44,13 @@ impl DraftPane {
         let blocked = panning || self.band_stroke.is_some();
         let (response, touches) = zone.touches(
             ui,
-            areas.drawdown,
-            "drawdown",
-            &name,
+            &Field {
+                rect: areas.drawdown,
+                key: "drawdown",
+                name: &name,
+                blocked,
+            },
             to_cell,
-            (0, 0),
-            blocked,
         );
         let shift = ui.input(|input| input.modifiers.shift);
         if !touches.is_empty() && zone.in_stroke() {
@@ -146,7 +147,7 @@ impl DraftPane {
                 let steps = (self.wheel / WHEEL_STEP).trunc();
                 self.wheel -= steps * WHEEL_STEP;
                 if steps != 0.0 {
-                    look.zoom(steps as i32, grid.from_middle(at));
+                    look.zoom(steps as i32, grid.off_middle(at));
                 }
             }
         }
@@ -206,8 +207,16 @@ impl DraftPane {
             let mut zone = self.bands[index];
             let to_cell = |at| band.cell(areas, grid, at);
             let blocked = self.stroke.is_some();
-            let (response, touches) =
-                zone.touches(ui, rect, band.name(false), name, to_cell, (0, 0), blocked);
+            let (response, touches) = zone.touches(
+                ui,
+                &Field {
+                    rect,
+                    key: band.name(false),
+                    name,
+                    blocked,
+                },
+                to_cell,
+            );
             self.bands[index] = zone;
             for touch in touches {
                 self.band_stroke(ui, document, band, touch, actions);

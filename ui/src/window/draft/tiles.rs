@@ -4,7 +4,7 @@
 //! What is small is made at once, within a budget of time a frame; what is large is made
 //! on a thread while the old tile is still shown.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ const BUDGET: Duration = Duration::from_millis(5);
 const AT_ONCE: u64 = 1 << 18;
 
 /// Which tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     colouring: Colouring,
     level: u32,
@@ -74,7 +74,7 @@ struct Made {
 /// The tiles, and the thread that makes the large ones.
 #[derive(Default)]
 pub struct Tiles {
-    tiles: HashMap<Key, Tile>,
+    tiles: BTreeMap<Key, Tile>,
     frame: u64,
     maker: Option<Maker>,
 }

@@ -23,6 +23,18 @@ pub enum Touch {
     Key(Cell, Button),
 }
 
+/// Where a field lies and what it is called.
+#[derive(Debug, Clone, Copy)]
+pub struct Field<'n> {
+    pub rect: Rect,
+    /// Which field it is, always the same.
+    pub key: &'static str,
+    /// What assistive technology calls it.
+    pub name: &'n str,
+    /// No stroke begins in it now.
+    pub blocked: bool,
+}
+
 /// A field's own state.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Zone {
@@ -57,18 +69,19 @@ impl Zone {
         self.space_used = true;
     }
 
-    /// Makes `rect` a field called `name`; `to_cell` tells the cell under a point and
-    /// `start` where the keyboard's cursor begins. Strokes do not begin while `blocked`.
+    /// Makes a field of the screen; `to_cell` tells the cell under a point.
     pub fn touches(
         &mut self,
         ui: &egui::Ui,
-        rect: Rect,
-        key: &str,
-        name: &str,
+        field: &Field<'_>,
         to_cell: impl Fn(Pos2) -> Cell,
-        start: Cell,
-        blocked: bool,
     ) -> (Response, Vec<Touch>) {
+        let Field {
+            rect,
+            key,
+            name,
+            blocked,
+        } = *field;
         let id = egui::Id::unique(("field", key));
         self.id = Some(id);
         let response = ui.interact(rect, id, Sense::click_and_drag());
@@ -76,7 +89,7 @@ impl Zone {
         let mut touches = Vec::new();
         self.pointer(ui, &response, &to_cell, blocked, &mut touches);
         if response.has_focus() {
-            self.keys(ui, &response, start, &mut touches);
+            self.keys(ui, &response, &mut touches);
         }
         (response, touches)
     }
@@ -127,11 +140,9 @@ impl Zone {
                         button,
                         pressed: false,
                         ..
-                    } => {
-                        if self.stroke.is_some_and(|(held, _)| held == button) {
-                            self.stroke = None;
-                            touches.push(Touch::Release);
-                        }
+                    } if self.stroke.is_some_and(|(held, _)| held == button) => {
+                        self.stroke = None;
+                        touches.push(Touch::Release);
                     }
                     _ => {}
                 }
@@ -150,7 +161,7 @@ impl Zone {
         }
     }
 
-    fn keys(&mut self, ui: &egui::Ui, response: &Response, start: Cell, touches: &mut Vec<Touch>) {
+    fn keys(&mut self, ui: &egui::Ui, response: &Response, touches: &mut Vec<Touch>) {
         let filter = egui::EventFilter {
             horizontal_arrows: true,
             vertical_arrows: true,
@@ -158,7 +169,7 @@ impl Zone {
             ..Default::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        let cursor = self.cursor.get_or_insert(start);
+        let cursor = self.cursor.get_or_insert((0, 0));
         ui.input(|input| {
             if input.modifiers.alt || input.modifiers.command {
                 return;
