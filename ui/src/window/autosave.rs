@@ -187,6 +187,12 @@ impl Autosave {
     }
 }
 
+impl Drop for Autosave {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
 /// Writes what is ordered until the window closes. A copy that is not needed any more is
 /// taken away; one of unsaved work stays behind.
 fn write_copies(folder: &Path, wanted: &Receiver<Order>, tell: &Sender<String>) {

@@ -141,6 +141,8 @@ pub struct Files {
     typed: Option<TypedPath>,
     reading: Option<(String, Task<FileEvent>)>,
     writing: Option<(String, Task<FileEvent>)>,
+    /// Paths are typed: no dialog of the system is tried.
+    pub typed_only: bool,
     /// A path that was chosen for writing; the app hands over the design then.
     chosen: Option<(Purpose, PathBuf)>,
 }
@@ -168,6 +170,10 @@ impl Files {
 
     fn ask_for(&mut self, ctx: &egui::Context, purpose: Purpose, proposed: String) {
         if self.dialog.is_some() {
+            return;
+        }
+        if self.typed_only {
+            self.type_for(purpose, proposed, "Type or paste it.");
             return;
         }
         let offered = proposed.clone();

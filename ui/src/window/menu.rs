@@ -119,6 +119,11 @@ pub fn show(ui: &mut egui::Ui, situation: &Situation<'_>, title: &str) -> Option
 
 fn menu_ui(ui: &mut egui::Ui, menu: Menu, situation: &Situation<'_>) -> Option<Choice> {
     let mut choice = None;
+    // The longest menu fits a window of 640 points.
+    let spacing = ui.spacing_mut();
+    spacing.item_spacing.y = 0.0;
+    spacing.interact_size.y = 5.0 * tokens::GRID;
+    spacing.button_padding.y = 0.5 * tokens::GRID;
     for row in TABLE.iter().filter(|row| row.menu == menu) {
         if row.apart {
             ui.separator();
@@ -242,9 +247,22 @@ pub fn pressed(ctx: &egui::Context) -> Option<Command> {
         if alone && (typing || !ctx.input(|input| plain(input.modifiers, modifiers))) {
             return None;
         }
+        // In a text field, select all, undo and the like mean its text.
+        if typing && !outside_text(command) {
+            return None;
+        }
         ctx.input_mut(|input| input.consume_shortcut(shortcut))
             .then_some(command)
     })
+}
+
+/// Whether a command's keys act while a text is typed: those of files and of the palette.
+fn outside_text(command: Command) -> bool {
+    let menu = TABLE
+        .iter()
+        .find(|row| row.command == command)
+        .map(|row| row.menu);
+    matches!(menu, Some(Menu::File | Menu::Help))
 }
 
 fn count(modifiers: Modifiers) -> u32 {

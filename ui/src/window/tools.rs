@@ -52,8 +52,22 @@ fn tool_ui(ui: &mut egui::Ui, tool: Tool, on: bool) -> bool {
     let Some(row) = row_of(Command::Use(tool)) else {
         return false;
     };
+    let key = (row.shortcuts.first()).map(|key| ui.ctx().format_shortcut(key));
+    let tip = format!("{} ({})\n{}", row.label, key.unwrap_or_default(), row.tip);
+    let sign = |painter: &egui::Painter, rect, ink| icons::tool(painter, rect, tool, ink);
+    sign_button(ui, row.label, &tip, on, sign)
+}
+
+/// A button with a drawn sign; true when it was clicked.
+fn sign_button(
+    ui: &mut egui::Ui,
+    name: &str,
+    tip: &str,
+    on: bool,
+    sign: impl FnOnce(&egui::Painter, Rect, Color32),
+) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, row.label));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, name));
     let palette = Palette::current(ui);
     let (fill, ink) = if on {
         (tokens::ACCENT, Color32::WHITE)
@@ -68,33 +82,21 @@ fn tool_ui(ui: &mut egui::Ui, tool: Tool, on: bool) -> bool {
         ui.painter()
             .rect_stroke(rect, tokens::RADIUS, stroke, StrokeKind::Outside);
     }
-    icons::tool(ui.painter(), rect, tool, ink);
-    let key = row
-        .shortcuts
-        .first()
-        .map(|key| ui.ctx().format_shortcut(key));
-    let tip = format!("{} ({})\n{}", row.label, key.unwrap_or_default(), row.tip);
+    sign(ui.painter(), rect, ink);
     response.on_hover_text(tip).clicked()
 }
 
 fn mirror_ui(ui: &mut egui::Ui, draft: &mut DraftPane) {
     ui.label(RichText::new("Mirror").small());
     ui.horizontal(|ui| {
-        for (axis, (sign, command)) in [
-            ("↔", Command::SymmetryAcross),
-            ("↕", Command::SymmetryAlong),
-        ]
-        .into_iter()
-        .enumerate()
+        for (axis, command) in [Command::SymmetryAcross, Command::SymmetryAlong]
+            .into_iter()
+            .enumerate()
         {
             let Some(row) = row_of(command) else { continue };
-            let button = Button::selectable(draft.symmetry[axis], sign).min_size(vec2(SIDE, SIDE));
-            let response = ui.add(button);
-            let on = draft.symmetry[axis];
-            response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::Button, true, on, row.label)
-            });
-            if response.on_hover_text(row.tip).clicked() {
+            let sign = |painter: &egui::Painter, rect, ink| icons::mirror(painter, rect, axis, ink);
+            let label = format!("{}\n{}", row.label, row.tip);
+            if sign_button(ui, row.label, &label, draft.symmetry[axis], sign) {
                 draft.symmetry[axis] = !draft.symmetry[axis];
             }
         }

@@ -50,7 +50,11 @@ fn options() -> AppOptions {
 
 fn build(builder: HarnessBuilder<App>, design: Option<&str>) -> Window {
     let opened = design.map(|name| Opened::preset(name).expect("a preset"));
-    builder.build_eframe(|cc| App::new(&cc.egui_ctx, opened, options()).expect("a worker"))
+    let mut window: Window =
+        builder.build_eframe(|cc| App::new(&cc.egui_ctx, opened, options()).expect("a worker"));
+    // On a desk with a real dialog a test would wait for a person.
+    window.state_mut().files.typed_only = true;
+    window
 }
 
 /// Lets the window and its threads go on until `done`.

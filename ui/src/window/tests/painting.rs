@@ -256,7 +256,7 @@ fn the_palette_finds_and_does() {
     let mut window = still_window("oxford");
     window.key_press_modifiers(Modifiers::COMMAND, Key::K);
     window.run_steps(3);
-    window.get_by_label("Find a command").type_text("invert");
+    window.get_by_label("Command to find").type_text("invert");
     window.run_steps(3);
     let before = up(&window, 0, 0);
     window.key_press(Key::Enter);
