@@ -132,9 +132,13 @@ impl<T: Copy + PartialEq> Grid<T> {
 }
 
 impl<T: Copy + PartialEq + Ord> Grid<T> {
-    /// The largest value, by whole tiles where they are shared.
+    /// The largest value.
     pub fn max(&self) -> Option<T> {
-        self.iter().max()
+        let words = self.ends.div_ceil(TILE);
+        let picks = (0..self.picks).flat_map(|pick| (0..words).map(move |word| (word, pick)));
+        picks
+            .filter_map(|(word, pick)| self.pick_values(word, pick).iter().copied().max())
+            .max()
     }
 }
 

@@ -14,7 +14,9 @@
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
-//! | `count`, `stripes` | yarn counts and orders of threads as weavers write them |
+//! | `count` | yarn counts as spinners and weavers write them |
+//! | `stripes` | the order of a direction's yarns as it is typed ("12 navy 4 cream") |
+//! | `tiles` | what patterns and grids are kept in: tiles that clones share |
 //! | `document` | the design that holds all of these together |
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
@@ -39,7 +41,7 @@ mod pattern;
 mod reach;
 mod sett;
 mod source;
-mod stripes;
+pub mod stripes;
 mod structure;
 mod swatch;
 mod tiles;
@@ -64,7 +66,6 @@ pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
 pub use reach::{ClothBox, FaceFloat, float_through, long_floats_in};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
 pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
-pub use stripes::{StripesError, read_stripes, write_stripes};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };

@@ -8,10 +8,13 @@ use std::sync::Arc;
 /// Crossings along each side of a tile.
 pub(super) const TILE: u32 = 64;
 
+/// Tiles side by side, from left to right.
+type Row<T> = Arc<Vec<Arc<T>>>;
+
 /// Tiles in rows from the bottom, each from left to right.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Tiles<T: ?Sized> {
-    rows: Vec<Arc<Vec<Arc<T>>>>,
+    rows: Vec<Row<T>>,
 }
 
 impl<T: ?Sized> Clone for Tiles<T> {
@@ -57,7 +60,7 @@ impl<T: ?Sized> Tiles<T> {
     /// Puts `change(tile)` in the place of every tile; neighbours that share a tile share
     /// what it becomes.
     pub(super) fn replace(&mut self, change: impl Fn(&Arc<T>) -> Arc<T>) {
-        let mut last_row: Option<(Arc<Vec<Arc<T>>>, Arc<Vec<Arc<T>>>)> = None;
+        let mut last_row: Option<(Row<T>, Row<T>)> = None;
         for row in &mut self.rows {
             if let Some((old, new)) = &last_row
                 && Arc::ptr_eq(old, row)
@@ -105,7 +108,7 @@ impl<T: ?Sized> Tiles<T> {
                 && other.rows.first().map(|row| row.len()) == self.rows.first().map(|row| row.len())
         };
         let other = other.filter(same_size);
-        let mut bytes = self.rows.len() * size_of::<Arc<Vec<Arc<T>>>>();
+        let mut bytes = self.rows.len() * size_of::<Row<T>>();
         for (place, row) in self.rows.iter().enumerate() {
             let before = other.map(|other| &other.rows[place]);
             if before.is_some_and(|before| Arc::ptr_eq(before, row)) {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::cells::Rect;
 use super::history::State;
-use crate::design::{Grid, Structure, WeavePattern, YarnMap};
+use crate::design::{Design, Grid, Structure, WeavePattern, YarnMap};
 
 /// Boxes named one by one; beyond, they are joined.
 const MOST_RECTS: usize = 64;
@@ -59,7 +59,7 @@ pub struct Change {
     pub lattice: bool,
     /// Threading, tie-up, treadling, the list of regions, or the kind of structure.
     pub structure: bool,
-    /// Name, notes or what is kept of the file.
+    /// Name, notes, the name of the own yarns, or what is kept of the file.
     pub words: bool,
 }
 
@@ -71,7 +71,16 @@ impl Change {
 
     /// What differs between two states.
     pub(super) fn between(before: &State, after: &State) -> Self {
-        let (old, new) = (before.design.as_ref(), after.design.as_ref());
+        let parts = Self::of_parts(&before.design, &after.design);
+        let crossings = match parts.size {
+            true => Touched::All,
+            false => touched(before, after),
+        };
+        Self { crossings, ..parts }
+    }
+
+    /// What differs between two designs beside their crossings.
+    pub(super) fn of_parts(old: &Design, new: &Design) -> Self {
         let size = (old.ends(), old.picks()) != (new.ends(), new.picks());
         let own_yarns = |structure: &Structure| match structure {
             Structure::Regions(regions) => {
@@ -81,11 +90,7 @@ impl Change {
             _ => Vec::new(),
         };
         Self {
-            crossings: if size {
-                Touched::All
-            } else {
-                touched(before, after)
-            },
+            crossings: Touched::None,
             yarns: old.yarns() != new.yarns()
                 || orders_differ(&old.maps().warp, &new.maps().warp)
                 || orders_differ(&old.maps().weft, &new.maps().weft)
@@ -95,7 +100,10 @@ impl Change {
             sett: old.sett() != new.sett(),
             lattice: old.lattice() != new.lattice(),
             structure: structure_differs(old.structure(), new.structure()),
-            words: old.name != new.name || old.notes != new.notes || old.origin != new.origin,
+            words: old.name != new.name
+                || old.notes != new.notes
+                || old.colourway != new.colourway
+                || old.origin != new.origin,
         }
     }
 }

@@ -163,7 +163,8 @@ pub enum Edit {
     /// Puts the yarns in another order; the cloth stays. Place i of the list gets the yarn
     /// that had number `order[i]`.
     OrderYarns(Vec<u16>),
-    /// Gives some threads another yarn. An order shorter than the design is written out.
+    /// Gives some threads another yarn. The order is written out until it closes with the
+    /// design: threads count up to the cloth's repeat.
     PaintThreads {
         /// Ends or picks.
         direction: Direction,

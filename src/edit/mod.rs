@@ -11,6 +11,8 @@
 //! | `edits` | all that can be done to a design, and what each is called |
 //! | `cells` | a set of crossings: a stroke, a fill, a selection |
 //! | `change` | what differs between two states |
+//! | `symmetry`, `shapes`, `fill`, `selection` | tools: from pointer positions to crossings |
+//! | `recovery` | what is left of unsaved work after a crash |
 //! | `crossings`, `drafts`, `regions`, `threads`, `colourways`, `whole`, `turn` | how each kind is done |
 
 mod cells;
@@ -21,8 +23,13 @@ mod document;
 mod drafts;
 mod edits;
 mod error;
+pub mod fill;
 mod history;
+pub mod recovery;
 mod regions;
+mod selection;
+pub mod shapes;
+mod symmetry;
 mod threads;
 mod turn;
 mod whole;
@@ -33,6 +40,8 @@ pub use document::Document;
 pub use edits::{Direction, Edit, Rows};
 pub use error::EditError;
 pub use history::{Entry, HISTORY_BYTES};
+pub use selection::{Clip, Picked, moved, picked};
+pub use symmetry::{Point, Span, Surface, Symmetry};
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]

@@ -147,8 +147,11 @@ pub(super) fn reorder(work: &mut Work, order: &[u16]) -> Result<(), EditError> {
     put(work, yarns, maps, colourways)
 }
 
-/// Gives threads another yarn. An order whose period is not the design's is first written
-/// out over the least length that both close in, so that only these threads change.
+/// The longest order that painting a thread writes out.
+const MOST_WRITTEN: usize = 1 << 20;
+
+/// Gives threads another yarn. The order is first written out until it closes with the
+/// design, so that no other thread of the cloth's repeat changes.
 pub(super) fn paint(
     work: &mut Work,
     direction: Direction,
@@ -157,18 +160,9 @@ pub(super) fn paint(
 ) -> Result<(), EditError> {
     check(&work.design, yarn)?;
     let (count, thing) = match direction {
-        Direction::Warp => (work.design.ends(), "end"),
-        Direction::Weft => (work.design.picks(), "pick"),
+        Direction::Warp => (work.design.ends() as usize, "end"),
+        Direction::Weft => (work.design.picks() as usize, "pick"),
     };
-    if let Some(&most) = threads.iter().max()
-        && most >= count
-    {
-        return Err(EditError::Missing {
-            thing,
-            number: u64::from(most) + 1,
-            count: u64::from(count),
-        });
-    }
     let maps = work.design.maps_mut();
     let map = match direction {
         Direction::Warp => &mut maps.warp,
@@ -177,9 +171,28 @@ pub(super) fn paint(
     let YarnMap::Order(order) = map else {
         return Err(by_crossing(direction));
     };
-    // The order as it lies over one design; whole repeats of it in the design stay so.
-    let written: Vec<YarnId> = order.iter().copied().cycle().take(count as usize).collect();
-    *order = written;
+    let mut copies = 1;
+    while copies * order.len() <= MOST_WRITTEN && !(copies * order.len()).is_multiple_of(count) {
+        copies += 1;
+    }
+    let length = copies * order.len();
+    if length > MOST_WRITTEN {
+        return Err(EditError::Value {
+            place: "yarn order",
+            problem: "it closes with the design only after a million threads: type it instead"
+                .to_owned(),
+        });
+    }
+    if let Some(&most) = threads.iter().max()
+        && most as usize >= length
+    {
+        return Err(EditError::Missing {
+            thing,
+            number: u64::from(most) + 1,
+            count: length as u64,
+        });
+    }
+    *order = order.repeat(copies);
     for &thread in threads {
         order[thread as usize] = yarn;
     }
