@@ -69,7 +69,7 @@ pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };
-pub use swatch::{Colouring, SwatchWindow, swatch};
+pub use swatch::{Colouring, SwatchWindow, region_colour, swatch};
 pub use weaves::{
     BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
     double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,

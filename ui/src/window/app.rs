@@ -6,6 +6,7 @@ use pickglass::edit::Document;
 
 use super::action::Action;
 use super::asking::Asking;
+use super::autosave::{Autosave, RecoveryFolder};
 use super::crossing;
 use super::draft::DraftPane;
 use super::export::Export;
@@ -21,6 +22,7 @@ use super::start::StartPage;
 use super::status::{self, Cancel, Status};
 use super::toasts::Toasts;
 use super::tools;
+use super::volume::VolumeExport;
 use crate::opened::Opened;
 use crate::tokens;
 
@@ -29,6 +31,7 @@ use crate::tokens;
 pub struct AppOptions {
     pub preview: PreviewSettings,
     pub settings: SettingsFile,
+    pub recovery: RecoveryFolder,
 }
 
 /// The window's state.
@@ -40,7 +43,9 @@ pub struct App {
     pub(super) layout: Layout,
     pub(super) start: StartPage,
     pub(super) files: Files,
+    pub(super) autosave: Autosave,
     pub(super) export: Export,
+    pub(super) volume: VolumeExport,
     pub(super) asking: Asking,
     pub(super) palette: CommandPalette,
     pub(super) toasts: Toasts,
@@ -77,7 +82,9 @@ impl App {
             layout: Layout::from_kept(settings.layout.take()),
             start: StartPage::default(),
             files: Files::default(),
+            autosave: Autosave::new(ctx, options.recovery),
             export: Export::default(),
+            volume: VolumeExport::default(),
             asking: Asking::default(),
             palette: CommandPalette::default(),
             toasts: Toasts::default(),
@@ -115,11 +122,9 @@ impl App {
         let at = document.map_or(0, Document::position);
         Situation {
             open: document.is_some(),
-            shaft_draft: document.is_some_and(super::draft::is_shaft_draft),
             undo: document.filter(|d| d.can_undo()).and_then(|_| name(at)),
             redo: document.filter(|d| d.can_redo()).and_then(|_| name(at + 1)),
             selection: self.draft.selection().is_some(),
-            clip: self.draft.has_clip(),
             view: self.preview.view,
             light: &self.preview.light,
             paused: self.preview.paused,
@@ -159,9 +164,9 @@ impl App {
     fn status_ui(&mut self, ui: &mut egui::Ui) {
         let phase = self.preview.phase();
         let document = self.session.as_ref().map(|session| &session.document);
-        let crossing = document
-            .zip(self.hover)
-            .and_then(|(document, at)| crossing::describe(document, at));
+        let crossing = document.zip(self.hover).and_then(|(document, at)| {
+            crossing::describe(document, at, self.draft.show.arrangement)
+        });
         let cancel = status::show(
             ui,
             &Status {
@@ -170,7 +175,7 @@ impl App {
                 phase: &phase,
                 building: self.preview.building(),
                 paused: self.preview.paused,
-                export: self.export.progress(),
+                export: self.export.progress().or_else(|| self.volume.progress()),
                 files: self.files.at_work(),
                 crossing: crossing.as_deref(),
                 tool: self.draft.tool_words(),
@@ -178,7 +183,10 @@ impl App {
         );
         match cancel {
             Some(Cancel::Preview) => self.preview.pause(),
-            Some(Cancel::Export) => self.export.cancel(),
+            Some(Cancel::Export) => {
+                self.export.cancel();
+                self.volume.cancel();
+            }
             None => {}
         }
     }
@@ -260,6 +268,9 @@ impl eframe::App for App {
         let mut actions = Vec::new();
         self.preview.poll(&ctx, &mut actions);
         self.pick_up(&ctx);
+        if let Some(session) = &self.session {
+            self.autosave.keep(&ctx, session);
+        }
         if !self.asking.is_open()
             && let Some(command) = menu::pressed(&ctx)
         {
@@ -280,6 +291,7 @@ impl eframe::App for App {
         self.toasts.show(&ctx, pane.right_bottom());
         self.files.show(&ctx);
         self.export.show(&ctx);
+        self.volume.show(&ctx);
         self.asking_ui(&ctx);
         let mut palette = std::mem::take(&mut self.palette);
         let command = palette.show(&ctx, &self.situation());
@@ -297,6 +309,12 @@ impl eframe::App for App {
     fn on_exit(&mut self) {
         let ctx = self.ctx.clone();
         self.keep_settings(&ctx);
+        let modified =
+            (self.session.as_ref()).is_some_and(|session| session.document.is_modified());
+        if !modified || self.may_close {
+            self.autosave.leave();
+        }
+        self.autosave.finish();
     }
 }
 
@@ -305,12 +323,16 @@ impl App {
         let ctx = ui.ctx().clone();
         let mut choice = None;
         CentralPanel::default().show(ui, |ui| {
-            choice = self.start.show(ui, &self.settings.recent);
+            choice = self
+                .start
+                .show(ui, &self.settings.recent, &self.autosave.found);
         });
         match choice {
             Some(super::start::Choice::Command(command)) => self.obey(&ctx, command),
             Some(super::start::Choice::Preset(name)) => self.files.open_preset(&ctx, name),
             Some(super::start::Choice::Recent(path)) => self.files.open(&ctx, path),
+            Some(super::start::Choice::Recover(found)) => self.files.recover(&ctx, &found),
+            Some(super::start::Choice::Discard(path)) => self.autosave.discard(&path),
             None => {}
         }
     }

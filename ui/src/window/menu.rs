@@ -23,12 +23,10 @@ pub enum Choice {
 /// What the menus show as chosen, and what can be done now.
 pub struct Situation<'s> {
     pub open: bool,
-    pub shaft_draft: bool,
     /// What would be undone and redone.
     pub undo: Option<String>,
     pub redo: Option<String>,
     pub selection: bool,
-    pub clip: bool,
     pub view: View,
     pub light: &'s LightChoice,
     pub paused: bool,
@@ -62,7 +60,6 @@ impl Situation<'_> {
             | Command::Clear
             | Command::Deselect
             | Command::CropToSelection => self.open && self.selection,
-            Command::Paste => self.open && self.clip,
             _ => self.open,
         }
     }

@@ -26,10 +26,17 @@ impl Session {
     /// A session of what was read. A file of another format is not written over: its
     /// design is saved under a new name.
     pub fn of(opened: &Opened, path: Option<PathBuf>) -> Self {
-        let own = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "ron");
         Self {
             document: Document::new(Design::clone(&opened.design)),
-            path: path.filter(own),
+            path: path.filter(own_format),
+        }
+    }
+
+    /// A session of work that is in no file yet.
+    pub fn unsaved(design: Design, path: Option<PathBuf>) -> Self {
+        Self {
+            document: Document::unsaved(design),
+            path: path.filter(own_format),
         }
     }
 
@@ -65,6 +72,11 @@ impl Session {
     pub fn design(&self) -> Arc<Design> {
         Arc::clone(self.document.design())
     }
+}
+
+/// Whether a file is a design document, which holds all of a design.
+fn own_format(path: &PathBuf) -> bool {
+    path.extension().is_some_and(|ending| ending == "ron")
 }
 
 /// A 2/2 twill on four shafts in two cottons: something to draw on.

@@ -1,7 +1,7 @@
 //! The palette at the left: tools, what painting changes, and with which yarns.
 
 use egui::{Button, Color32, Rect, RichText, Sense, Stroke, StrokeKind, vec2};
-use pickglass::design::{Srgb, Structure, YarnId};
+use pickglass::design::{Srgb, Structure, YarnId, region_colour};
 use pickglass::edit::Document;
 
 use super::action::{Action, Button as PaintButton};
@@ -152,11 +152,7 @@ fn regions_ui(
         return;
     };
     let colours: Vec<(String, Color32)> = (regions.palette().iter().enumerate())
-        .map(|(index, region)| {
-            let grey = 40 + (index as u32 * 61 % 180) as u8;
-            let colour = region.colour.map_or(Color32::from_gray(grey), colour);
-            (region.name.clone(), colour)
-        })
+        .map(|(index, region)| (region.name.clone(), colour(region_colour(index, region))))
         .collect();
     let chosen = draft.regions.map(usize::from);
     let wish = |index: usize, button| Action::PaintRegion(index as u16, button);

@@ -4,7 +4,7 @@
 //! The endless cloth's end 0 is at x = 0 and its pick 0 at y = 0, y upwards; the screen's
 //! y runs down.
 
-use egui::{Pos2, Rect, pos2, vec2};
+use egui::{Pos2, Rect, pos2};
 
 /// Physical pixels a crossing, from the furthest look to the closest. Below one pixel the
 /// steps halve, so that a pixel is a whole square of crossings.
@@ -175,14 +175,6 @@ impl CellGrid {
     /// One physical pixel, points.
     pub fn pixel(&self) -> f32 {
         (1.0 / self.density) as f32
-    }
-
-    /// A rectangle moved and stretched to whole physical pixels.
-    pub fn snapped(&self, rect: Rect) -> Rect {
-        let snap = |at: f32| ((f64::from(at) * self.density).round() / self.density) as f32;
-        let min = pos2(snap(rect.min.x), snap(rect.min.y));
-        let size = vec2(snap(rect.width()), snap(rect.height()));
-        Rect::from_min_size(min, size)
     }
 }
 
