@@ -149,7 +149,7 @@ impl Yarns {
         }
         if self.open == Some(index) {
             ui.indent(("yarn", index), |ui| {
-                self.details_ui(ui, design, id, yarn, actions)
+                self.details_ui(ui, design, id, yarn, actions);
             });
         }
     }
