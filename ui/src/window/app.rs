@@ -101,7 +101,7 @@ impl App {
             app.warn(wrong, "Nothing of your designs is lost.");
         }
         if let Some(opened) = opened {
-            app.take_design(&opened, None);
+            app.take_design(&opened);
         }
         Ok(app)
     }
@@ -271,9 +271,9 @@ impl eframe::App for App {
         if let Some(session) = &self.session {
             self.autosave.keep(&ctx, session);
         }
-        if !self.asking.is_open()
-            && let Some(command) = menu::pressed(&ctx)
-        {
+        // What is asked is answered before anything else is done.
+        let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
+        if !asked && let Some(command) = menu::pressed(&ctx) {
             self.obey(&ctx, command);
         }
         self.ask_before_closing(&ctx);

@@ -56,11 +56,6 @@ pub struct Asking {
 }
 
 impl Asking {
-    /// Whether a question is open.
-    pub fn is_open(&self) -> bool {
-        self.question.is_some()
-    }
-
     /// Asks whether unsaved work is to be saved.
     pub fn about_unsaved(&mut self, next: Next) {
         self.question = Some(Question::Unsaved(next));

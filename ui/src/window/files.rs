@@ -29,7 +29,7 @@ const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
 /// What came of a file.
 pub enum FileEvent {
     /// A design was read, from a file or of the program's own.
-    Opened(Box<Opened>, Option<PathBuf>),
+    Opened(Box<Opened>),
     /// Unsaved work of an earlier run, the copy it is from, and its file if it has one.
     Recovered {
         design: Box<Design>,
@@ -212,20 +212,18 @@ impl Files {
     /// Opens a preset by name.
     pub fn open_preset(&mut self, ctx: &egui::Context, name: &str) {
         let preset = name.to_owned();
-        self.read(ctx, name, move || Ok((Opened::preset(&preset)?, None)));
+        self.read(ctx, name, move || Opened::preset(&preset));
     }
 
     /// Opens a new design.
     pub fn open_blank(&mut self, ctx: &egui::Context) {
-        self.read(ctx, "a new design", || Ok((session::blank()?, None)));
+        self.read(ctx, "a new design", session::blank);
     }
 
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
-        self.read(ctx, &name.to_string_lossy(), move || {
-            Ok((Opened::file(path.clone())?, Some(path)))
-        });
+        self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
     }
 
     /// Opens unsaved work of an earlier run.
@@ -267,10 +265,10 @@ impl Files {
         &mut self,
         ctx: &egui::Context,
         name: &str,
-        work: impl FnOnce() -> anyhow::Result<(Opened, Option<PathBuf>)> + Send + 'static,
+        work: impl FnOnce() -> anyhow::Result<Opened> + Send + 'static,
     ) {
         let work = move || match work() {
-            Ok((opened, path)) => FileEvent::Opened(Box::new(opened), path),
+            Ok(opened) => FileEvent::Opened(Box::new(opened)),
             Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
         };
         // A newer choice replaces one that is still being read.

@@ -1,8 +1,6 @@
 //! What is open: designs that come and go, what the threads finished, and the questions in
 //! between.
 
-use std::path::PathBuf;
-
 use egui::ViewportCommand;
 
 use super::app::App;
@@ -16,15 +14,15 @@ use crate::opened::Opened;
 
 impl App {
     /// Opens a design.
-    pub(super) fn take_design(&mut self, opened: &Opened, path: Option<PathBuf>) {
+    pub(super) fn take_design(&mut self, opened: &Opened) {
         for warning in &opened.warnings {
             self.warn(warning.clone(), "The design was opened.");
         }
-        if let Some(path) = &path {
+        if let Some(path) = &opened.path {
             self.settings.opened(path);
             self.write_settings();
         }
-        self.show_session(Some(Session::of(opened, path)));
+        self.show_session(Some(Session::of(opened)));
     }
 
     /// Shows another document, or the start page; the copy of what was open before is not
@@ -89,18 +87,16 @@ impl App {
         if let Some(file) = dropped.first() {
             self.leave_for(ctx, Next::File(file.path().to_path_buf()));
         }
-        if let Some(session) = &self.session {
-            let title = session.title();
-            if self.told_title != title {
-                ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
-                self.told_title = title;
-            }
+        let title = (self.session.as_ref()).map_or("Pickglass".to_owned(), Session::title);
+        if self.told_title != title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.told_title = title;
         }
     }
 
     pub(super) fn file_event(&mut self, ctx: &egui::Context, event: FileEvent) {
         match event {
-            FileEvent::Opened(opened, path) => self.take_design(&opened, path),
+            FileEvent::Opened(opened) => self.take_design(&opened),
             FileEvent::Recovered {
                 design,
                 lost,

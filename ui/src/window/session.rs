@@ -25,10 +25,10 @@ pub struct Session {
 impl Session {
     /// A session of what was read. A file of another format is not written over: its
     /// design is saved under a new name.
-    pub fn of(opened: &Opened, path: Option<PathBuf>) -> Self {
+    pub fn of(opened: &Opened) -> Self {
         Self {
             document: Document::new(Design::clone(&opened.design)),
-            path: path.filter(|path| own_format(path)),
+            path: opened.path.clone().filter(|path| own_format(path)),
         }
     }
 
@@ -99,5 +99,6 @@ pub fn blank() -> anyhow::Result<Opened> {
     Ok(Opened {
         design: Arc::new(design),
         warnings: Vec::new(),
+        path: None,
     })
 }

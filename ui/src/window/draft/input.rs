@@ -41,7 +41,8 @@ impl DraftPane {
         let panning = self.panning(ui, areas);
         let mut zone = self.drawdown;
         let to_cell = |at| grid.crossing(at);
-        let blocked = panning || self.band_stroke.is_some();
+        let covered = self.covered(ui);
+        let blocked = panning || covered || self.band_stroke.is_some();
         let (response, touches) = zone.touches(
             ui,
             &Field {
@@ -95,6 +96,12 @@ impl DraftPane {
         self.menu_of_canvas(ui, &response, actions);
     }
 
+    /// Whether the pointer is on the navigator, which lies over the drawdown.
+    fn covered(&self, ui: &egui::Ui) -> bool {
+        let at = ui.input(|input| input.pointer.hover_pos());
+        self.show.navigator && at.is_some_and(|at| self.navigator.covers(at))
+    }
+
     /// Whether the pointer moves the cloth: the middle button, or Space, over the canvas.
     fn panning(&mut self, ui: &egui::Ui, areas: &Areas) -> bool {
         let typing = ui.ctx().text_edit_focused();
@@ -106,7 +113,7 @@ impl DraftPane {
                 input.pointer.any_down(),
             )
         });
-        let over = at.is_some_and(|at| areas.drawdown.contains(at));
+        let over = at.is_some_and(|at| areas.drawdown.contains(at)) && !self.covered(ui);
         let space = space && !typing && over;
         if space && moving {
             self.drawdown.space_used();
@@ -123,6 +130,7 @@ impl DraftPane {
         panning: bool,
     ) {
         let design = document.design();
+        let covered = self.covered(ui);
         let Some(look) = &mut self.look else { return };
         let (at, delta, down, wheel, pinch, keys) = ui.input(|input| {
             (
@@ -138,7 +146,7 @@ impl DraftPane {
         if panning && down {
             pan = [delta.x, -delta.y].map(|by| f64::from(by) * grid.density);
         }
-        let over = at.filter(|at| areas.drawdown.contains(*at));
+        let over = at.filter(|at| areas.drawdown.contains(*at) && !covered);
         if let Some(at) = over.filter(|_| ui.rect_contains_pointer(areas.drawdown)) {
             if keys.shift {
                 pan[0] += f64::from(wheel.x + wheel.y) * grid.density;

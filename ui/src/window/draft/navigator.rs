@@ -22,6 +22,8 @@ pub struct Navigator {
     made: Option<TextureHandle>,
     stale: bool,
     making: Option<Task<ColorImage>>,
+    /// Where it was shown last.
+    place: Option<Rect>,
 }
 
 impl Navigator {
@@ -36,6 +38,11 @@ impl Navigator {
             self.forget();
         }
         self.stale = true;
+    }
+
+    /// Whether a point lies on it, so that nothing below it is meant.
+    pub fn covers(&self, at: egui::Pos2) -> bool {
+        self.place.is_some_and(|place| place.contains(at))
     }
 
     /// Has the picture made on a thread, the newest state when the last one is done.
@@ -72,11 +79,12 @@ impl Navigator {
         areas: &Areas,
         grid: &CellGrid,
     ) -> Option<[f64; 2]> {
+        self.place = None;
         self.make(ui.ctx(), document);
         let design = document.design();
         let size = [design.ends(), design.picks()].map(|count| 3 * u64::from(count));
         let longest = size[0].max(size[1]);
-        let texture = self.made.as_ref()?;
+        let texture = self.made.as_ref()?.id();
         let scale = tokens::NAVIGATOR / longest as f32;
         let shown = vec2(size[0] as f32 * scale, size[1] as f32 * scale).max(vec2(8.0, 8.0));
         let corner = areas.drawdown.right_bottom() - vec2(tokens::GAP, tokens::GAP);
@@ -84,6 +92,7 @@ impl Navigator {
         if !areas.drawdown.contains_rect(rect) {
             return None;
         }
+        self.place = Some(rect);
         let painter = ui.painter_at(rect.expand(2.0));
         let palette = Palette::current(ui);
         painter.rect_filled(rect.expand(2.0), 0.0, palette.raised);
@@ -102,7 +111,7 @@ impl Navigator {
                 to_screen(end as f64, pick as f64),
                 to_screen(end as f64 + ends, pick as f64 + picks),
             );
-            inner.image(texture.id(), place, whole, Color32::WHITE);
+            inner.image(texture, place, whole, Color32::WHITE);
         }
         let [seen_ends, seen_picks] = grid.visible();
         let seen = Rect::from_two_pos(
