@@ -60,6 +60,9 @@ pub struct App {
     pub(super) told_title: String,
     frames_left: Option<u32>,
     ctx: egui::Context,
+    /// Seconds spent in each frame.
+    #[cfg(test)]
+    pub(super) spent: Vec<f64>,
 }
 
 impl App {
@@ -96,6 +99,8 @@ impl App {
             told_title: String::new(),
             frames_left: None,
             ctx: ctx.clone(),
+            #[cfg(test)]
+            spent: Vec::new(),
         };
         if let Some(wrong) = wrong {
             app.warn(wrong, "Nothing of your designs is lost.");
@@ -264,6 +269,29 @@ fn hovered_ui(ctx: &egui::Context, pane: Rect) {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        #[cfg(test)]
+        let begun = std::time::Instant::now();
+        self.frame(ui);
+        #[cfg(test)]
+        self.spent.push(begun.elapsed().as_secs_f64());
+    }
+
+    fn on_exit(&mut self) {
+        let ctx = self.ctx.clone();
+        self.keep_settings(&ctx);
+        let modified =
+            (self.session.as_ref()).is_some_and(|session| session.document.is_modified());
+        if !modified || self.may_close {
+            self.autosave.leave();
+        }
+        self.autosave.finish();
+    }
+}
+
+impl App {
+    /// What was finished is taken, keys are obeyed, all is shown, and what the panes asked
+    /// for is done.
+    fn frame(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut actions = Vec::new();
         self.preview.poll(&ctx, &mut actions);
@@ -306,19 +334,6 @@ impl eframe::App for App {
         self.count_frame(&ctx);
     }
 
-    fn on_exit(&mut self) {
-        let ctx = self.ctx.clone();
-        self.keep_settings(&ctx);
-        let modified =
-            (self.session.as_ref()).is_some_and(|session| session.document.is_modified());
-        if !modified || self.may_close {
-            self.autosave.leave();
-        }
-        self.autosave.finish();
-    }
-}
-
-impl App {
     fn start_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut choice = None;

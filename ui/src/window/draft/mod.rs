@@ -338,6 +338,11 @@ impl DraftPane {
         grid.rect(end, pick, 1, 1).center()
     }
 
+    /// Physical pixels a crossing.
+    pub fn cell(&self) -> f64 {
+        self.laid.expect("shown once").1.cell
+    }
+
     /// The middle of a cell of the threading.
     pub fn threading_place(&self, cell: Cell) -> egui::Pos2 {
         let (areas, grid) = self.laid.expect("shown once");

@@ -2,6 +2,7 @@
 //! on a software adapter.
 
 mod files;
+mod large;
 mod opening;
 mod painting;
 mod pictures;
@@ -49,7 +50,13 @@ fn options() -> AppOptions {
 }
 
 fn build(builder: HarnessBuilder<App>, design: Option<&str>) -> Window {
-    let opened = design.map(|name| Opened::preset(name).expect("a preset"));
+    open(
+        builder,
+        design.map(|name| Opened::preset(name).expect("a preset")),
+    )
+}
+
+fn open(builder: HarnessBuilder<App>, opened: Option<Opened>) -> Window {
     let mut window: Window =
         builder.build_eframe(|cc| App::new(&cc.egui_ctx, opened, options()).expect("a worker"));
     // On a desk with a real dialog a test would wait for a person.
