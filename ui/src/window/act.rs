@@ -16,11 +16,7 @@ impl App {
         for action in actions {
             match action {
                 Action::Edit(edit) => self.edit(*edit),
-                Action::Begin(name) => {
-                    if let Some(session) = &mut self.session {
-                        session.document.begin(name);
-                    }
-                }
+                Action::Begin(name) => self.begin(&name),
                 Action::Move { cells, by, behind } => {
                     let edits = self
                         .session
@@ -29,11 +25,7 @@ impl App {
                     edits.into_iter().flatten().for_each(|edit| self.edit(edit));
                 }
                 Action::Restart => self.rework(|session| Some(session.document.restart())),
-                Action::Finish => {
-                    if let Some(session) = &mut self.session {
-                        session.document.finish();
-                    }
-                }
+                Action::Finish => self.finish(),
                 Action::Cancel => self.rework(|session| Some(session.document.cancel())),
                 Action::GoTo(entry) => self.rework(|session| session.document.go_to(entry)),
                 Action::Command(command) => self.obey(ctx, command),
@@ -53,6 +45,20 @@ impl App {
                 Action::Show(pane) => self.layout.bring(pane),
                 Action::Say(grade, text, kept) => self.say(grade, text, kept),
             }
+        }
+    }
+
+    /// Begins a gesture: what follows is one entry of the history.
+    pub(super) fn begin(&mut self, name: &str) {
+        if let Some(session) = &mut self.session {
+            session.document.begin(name);
+        }
+    }
+
+    /// Ends the gesture.
+    pub(super) fn finish(&mut self) {
+        if let Some(session) = &mut self.session {
+            session.document.finish();
         }
     }
 

@@ -205,7 +205,11 @@ impl App {
                 self.asking.derive_always |= always;
                 self.edit(edit);
             }
-            Some(Answer::Edit(edit)) => self.edit(edit),
+            Some(Answer::Filled(name, edits)) => {
+                self.begin(name);
+                edits.into_iter().for_each(|edit| self.edit(edit));
+                self.finish();
+            }
             None => {}
         }
         // A save that was given up leaves nothing waiting for it.

@@ -18,6 +18,7 @@ mod crossing;
 mod draft;
 mod export;
 mod files;
+mod forms;
 mod icons;
 mod laid;
 mod layout;

@@ -4,6 +4,7 @@ use pickglass::design::WeavePattern;
 use pickglass::edit::{Cells, Clip, Direction, Edit, Rect};
 
 use super::app::App;
+use super::forms::Form;
 use crate::command_table::{Command, DraftLayout, Tool, Toward};
 
 impl App {
@@ -75,8 +76,17 @@ impl App {
                 };
                 Edit::Roll { ends, picks }
             }
-            Command::Resize => {
-                self.asking.about_size(document);
+            Command::Resize => return self.asking.fill_in(Form::size(design)),
+            Command::Repeat => return self.asking.fill_in(Form::repeat(design)),
+            Command::Words => return self.asking.fill_in(Form::words(design)),
+            Command::Loom => {
+                match Form::loom(design) {
+                    Some(form) => self.asking.fill_in(form),
+                    None => self.warn(
+                        "This design has no shafts: derive the draft first.",
+                        "The design is as it was.",
+                    ),
+                }
                 return;
             }
             Command::CropToSelection => match selection {

@@ -28,6 +28,7 @@ use crate::command_table::{Command, DraftLayout, Tool};
 use crate::tokens;
 use areas::Areas;
 use bands::Band;
+pub use bands::draft as draft_of;
 pub use draw::end_number;
 use grid::{CellGrid, Look};
 pub use strokes::tool_name;
