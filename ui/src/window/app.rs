@@ -209,11 +209,15 @@ impl App {
             .exact_size(tokens::TOOLS_WIDTH)
             .resizable(false)
             .show(ui, |ui| tools::show(ui, draft, document, actions));
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let ground = Frame::NONE.fill(tokens::Palette::current(ui).panel);
+        CentralPanel::default().frame(ground).show(ui, |ui| {
             self.layout.show(ui, &mut |ui, pane| match pane {
                 Pane::Draft => draft.show(ui, document, actions),
                 Pane::Cloth => preview.show(ui, document, actions),
-                other => panes.show(other, ui, document, actions),
+                other => {
+                    let room = Frame::NONE.inner_margin(tokens::GAP);
+                    room.show(ui, |ui| panes.show(other, ui, document, actions));
+                }
             });
         });
     }

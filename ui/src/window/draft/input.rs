@@ -57,7 +57,8 @@ impl DraftPane {
         if !touches.is_empty() && zone.in_stroke() {
             ui.ctx().request_repaint();
         }
-        let moved = zone.cursor != self.drawdown.cursor && response.has_focus();
+        let by_keys = zone.shown_cursor().is_some() && response.has_focus();
+        let moved = by_keys && zone.cursor != self.drawdown.cursor;
         self.drawdown = zone;
         for touch in touches {
             self.stroke(document, touch, shift, actions);
@@ -93,7 +94,7 @@ impl DraftPane {
             self.selection = None;
         }
         self.move_view(ui, document, areas, grid, panning);
-        self.menu_of_canvas(ui, &response, actions);
+        self.menu_of_canvas(ui, &response, grid, actions);
     }
 
     /// Whether the pointer is on the navigator, which lies over the drawdown.
@@ -177,11 +178,19 @@ impl DraftPane {
     }
 
     /// The right button paints, so the menu is on Shift+F10.
-    fn menu_of_canvas(&self, ui: &egui::Ui, response: &egui::Response, actions: &mut Vec<Action>) {
+    fn menu_of_canvas(
+        &self,
+        ui: &egui::Ui,
+        response: &egui::Response,
+        grid: &CellGrid,
+        actions: &mut Vec<Action>,
+    ) {
+        let (end, pick) = self.drawdown.cursor.unwrap_or((0, 0));
         let wanted = response.has_focus()
             && ui.input(|input| input.modifiers.shift && input.key_pressed(Key::F10));
         let popup = egui::Popup::from_response(response)
             .id(response.id.with("menu"))
+            .at_position(grid.rect(end, pick, 1, 1).right_bottom())
             .open_memory(wanted.then_some(egui::SetOpenCommand::Toggle))
             .close_behavior(egui::PopupCloseBehavior::CloseOnClick);
         popup.show(|ui| {
@@ -205,6 +214,7 @@ impl DraftPane {
         actions: &mut Vec<Action>,
     ) {
         let lift_plan = areas.loom.is_some_and(|loom| loom.lift_plan);
+        self.told = None;
         for (index, band) in Band::ALL.into_iter().enumerate() {
             let rect = band.rect(areas);
             let blank = band == Band::TieUp && lift_plan;
@@ -233,9 +243,9 @@ impl DraftPane {
             let at = ui.input(|input| input.pointer.hover_pos());
             if let Some(at) = at.filter(|_| response.contains_pointer()) {
                 self.hover = Some(grid.crossing(at));
+                self.told = Some(band.tip());
                 self.scroll_band(ui, areas, band);
             }
-            response.on_hover_text_at_pointer(band.tip());
         }
     }
 

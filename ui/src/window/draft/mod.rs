@@ -96,6 +96,8 @@ pub struct DraftPane {
     /// The shaft and the column that bands begin with, where not all of them fit.
     first_shaft: [i64; 2],
     in_use: bool,
+    /// What the field under the pointer is for.
+    told: Option<&'static str>,
     /// How the pane was divided when it was shown last.
     #[cfg(test)]
     laid: Option<(Areas, CellGrid)>,
@@ -134,6 +136,7 @@ impl DraftPane {
             wheel: 0.0,
             first_shaft: [0; 2],
             in_use: false,
+            told: None,
             #[cfg(test)]
             laid: None,
         }
@@ -183,9 +186,9 @@ impl DraftPane {
         self.tool
     }
 
-    /// What the status line says of the tool.
+    /// What the status line says: what the field under the pointer is for, or the tool.
     pub fn tool_words(&self) -> &'static str {
-        tool_name(self.tool)
+        self.told.unwrap_or(tool_name(self.tool))
     }
 
     /// Takes a tool; while its key stays down, for the moment only.

@@ -94,13 +94,15 @@ impl DraftPane {
         if Some(focused) == self.drawdown.id() {
             let cursor = self
                 .drawdown
-                .cursor
+                .shown_cursor()
                 .map(|(end, pick)| grid.rect(end, pick, 1, 1));
             frame(areas.drawdown, cursor);
         }
         for (band, zone) in Band::ALL.into_iter().zip(&self.bands) {
             if Some(focused) == zone.id() {
-                let cursor = zone.cursor.map(|cell| band.place(areas, grid, cell));
+                let cursor = zone
+                    .shown_cursor()
+                    .map(|cell| band.place(areas, grid, cell));
                 frame(band.rect(areas), cursor);
             }
         }

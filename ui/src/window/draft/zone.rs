@@ -44,6 +44,8 @@ pub struct Zone {
     stroke: Option<(PointerButton, Cell)>,
     /// The widget, once it was shown.
     id: Option<egui::Id>,
+    /// The pointer was used last: the keyboard's cursor would only be in the way.
+    by_pointer: bool,
     /// Space was used to move the view: letting it go paints nothing.
     space_used: bool,
 }
@@ -52,6 +54,11 @@ impl Zone {
     /// The widget, once it was shown.
     pub fn id(&self) -> Option<egui::Id> {
         self.id
+    }
+
+    /// The cell that keys act on, while keys are used.
+    pub fn shown_cursor(&self) -> Option<Cell> {
+        self.cursor.filter(|_| !self.by_pointer)
     }
 
     /// Whether a stroke is being made.
@@ -123,6 +130,7 @@ impl Zone {
                         };
                         let cell = to_cell(pos);
                         self.stroke = Some((button, cell));
+                        self.by_pointer = true;
                         self.cursor = Some(cell);
                         touches.push(Touch::Press(cell, side));
                     }
@@ -192,6 +200,7 @@ impl Zone {
                 } else {
                     Button::First
                 };
+                self.by_pointer = false;
                 match (key, pressed) {
                     (Key::ArrowLeft, true) => cursor.0 -= step,
                     (Key::ArrowRight, true) => cursor.0 += step,
