@@ -47,7 +47,7 @@ fn fingerprint(document: &Document) -> u64 {
     let mut add = |bits: u64| {
         hash = (hash ^ bits)
             .wrapping_mul(0x9e37_79b9_7f4a_7c15)
-            .rotate_left(23)
+            .rotate_left(23);
     };
     let Structure::Regions(regions) = document.design().structure() else {
         return 0;
@@ -83,7 +83,7 @@ fn stroke(document: &Document, number: usize) -> Edit {
         },
         1 => Edit::Paint {
             cells,
-            warp_up: number % 2 == 0,
+            warp_up: number.is_multiple_of(2),
         },
         _ => Edit::Flip(cells),
     }

@@ -135,54 +135,27 @@ impl Face {
         };
         Vec3::from_array(yarn.colour.to_linear().to_array().map(shown))
     }
-
-    /// The linear colour that this weave of two yarns is expected to show.
-    fn mixed(&self, warp: &Yarn, weft: &Yarn) -> Vec3 {
-        let (warp_share, warp_mixing) = self.mixing(fitted(warp.family));
-        let (weft_share, weft_mixing) = self.mixing(fitted(weft.family));
-        let share = 0.5 * (warp_share + weft_share);
-        let mixing = 0.5 * (warp_mixing + weft_mixing);
-        let (warp, weft) = (self.own(warp), self.own(weft));
-        let shown = |warp: f32, weft: f32| {
-            let n = 1.0 + mixing * warp.max(weft).powf(WANDERING);
-            let root = |light: f32| light.powf(1.0 / n);
-            (share * root(warp) + (1.0 - share) * root(weft)).powf(n)
-        };
-        Vec3::new(
-            shown(warp.x, weft.x),
-            shown(warp.y, weft.y),
-            shown(warp.z, weft.z),
-        )
-    }
 }
 
 /// The linear colour (Rec. 709, 0..=1) that a weave of two yarns is expected to show from
 /// afar: what a still's pixels average to under the default light.
 pub fn expected_colour(weave: &WeavePattern, warp: &Yarn, weft: &Yarn) -> Vec3 {
-    Face::of(weave).mixed(warp, weft)
-}
-
-/// How much darker than the fitted pictures a cloth is whose yarns cover `1` of their
-/// pitch: light is lost between yarns that stand apart.
-const LOST_BETWEEN: f32 = 0.78;
-/// Share of its light that a yarn loses where it lies on a black one.
-const LOST_BELOW: f32 = 0.17;
-
-/// The linear colours that the warp on top of the weft and the weft on top of the warp are
-/// expected to show in one crossing. `cover` is the yarns' diameter over their pitch.
-pub fn colours_on_top(warp: &Yarn, weft: &Yarn, cover: f32) -> [Vec3; 2] {
-    let face = Face {
-        lift: 0.5,
-        along_ends: 0.5,
-        along_picks: 0.5,
+    let face = Face::of(weave);
+    let (warp_share, warp_mixing) = face.mixing(fitted(warp.family));
+    let (weft_share, weft_mixing) = face.mixing(fitted(weft.family));
+    let share = 0.5 * (warp_share + weft_share);
+    let mixing = 0.5 * (warp_mixing + weft_mixing);
+    let (warp, weft) = (face.own(warp), face.own(weft));
+    let shown = |warp: f32, weft: f32| {
+        let n = 1.0 + mixing * warp.max(weft).powf(WANDERING);
+        let root = |light: f32| light.powf(1.0 / n);
+        (share * root(warp) + (1.0 - share) * root(weft)).powf(n)
     };
-    let own = [face.own(warp), face.own(weft)];
-    let light = own.map(|own| own.element_sum());
-    let lost = LOST_BETWEEN * (cover / 0.95).clamp(0.5, 1.0);
-    [(0, 1), (1, 0)].map(|(top, below)| {
-        let darker = (1.0 - light[below] / light[top].max(1e-4)).max(0.0);
-        own[top] * lost * (1.0 - LOST_BELOW * darker)
-    })
+    Vec3::new(
+        shown(warp.x, weft.x),
+        shown(warp.y, weft.y),
+        shown(warp.z, weft.z),
+    )
 }
 
 #[cfg(test)]

@@ -254,8 +254,7 @@ impl Design {
             }
         }
         let yarns = |yarns: &[Yarn]| {
-            yarns.len() * size_of::<Yarn>()
-                + yarns.iter().map(|yarn| yarn.name.len()).sum::<usize>()
+            size_of_val(yarns) + yarns.iter().map(|yarn| yarn.name.len()).sum::<usize>()
         };
         let map = |mine: &YarnMap, other: Option<&YarnMap>| match (mine, other) {
             (YarnMap::Order(order), _) => order.len() * size_of::<YarnId>(),

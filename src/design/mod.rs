@@ -14,7 +14,7 @@
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
-//! | `count` | yarn counts as weavers write them |
+//! | `count` | yarn counts as spinners and weavers write them |
 //! | `stripes` | the order of a direction's yarns as it is typed ("12 navy 4 cream") |
 //! | `tiles` | what patterns and grids are kept in: tiles that clones share |
 //! | `document` | the design that holds all of these together |
@@ -69,7 +69,7 @@ pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };
-pub use swatch::{Colouring, SwatchWindow, swatch};
+pub use swatch::{Colouring, SwatchWindow, region_colour, swatch};
 pub use weaves::{
     BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
     double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,

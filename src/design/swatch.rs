@@ -9,15 +9,18 @@ use glam::Vec4;
 use super::document::Design;
 use super::maps::YarnMap;
 use super::pattern::WeavePattern;
+use super::structure::{Region, Structure};
 use super::yarn::{Srgb, YarnId};
 
 /// What a crossing shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colouring {
     /// The colour of the yarn on top.
     Yarns,
     /// Black where the warp is up, white where the weft is.
     Structure,
+    /// The colour of the region in the artwork; of a design without regions, as `Yarns`.
+    Regions,
 }
 
 /// A window of the endless cloth: its lower left crossing and its size in pixels, each a
@@ -76,6 +79,15 @@ pub fn swatch(
     pixels
 }
 
+/// The colour that stands for a region: its own, or a grey that its neighbours in the list
+/// do not have.
+pub fn region_colour(index: usize, region: &Region) -> Srgb {
+    region.colour.unwrap_or_else(|| {
+        let grey = 40 + (index * 61 % 180) as u8;
+        Srgb(grey, grey, grey)
+    })
+}
+
 /// Sum of premultiplied linear colours → sRGB of what is covered, and coverage.
 fn encoded(sum: Vec4, weight: f32) -> [u8; 4] {
     if sum.w <= 0.0 {
@@ -90,6 +102,8 @@ fn encoded(sum: Vec4, weight: f32) -> [u8; 4] {
 struct Colours<Colour> {
     /// Of each yarn; empty where the structure alone is shown.
     yarns: Vec<Colour>,
+    /// Of each region; empty unless they are shown.
+    regions: Vec<Colour>,
     warp_up: Colour,
     weft_up: Colour,
 }
@@ -97,15 +111,23 @@ struct Colours<Colour> {
 impl<Colour: Copy> Colours<Colour> {
     fn of(design: &Design, colouring: Colouring, colour: impl Fn(Srgb) -> Colour) -> Self {
         let yarns = match colouring {
-            Colouring::Yarns => design
-                .yarns()
-                .iter()
-                .map(|yarn| colour(yarn.colour))
-                .collect(),
             Colouring::Structure => Vec::new(),
+            Colouring::Yarns | Colouring::Regions => {
+                let colours = design.yarns().iter().map(|yarn| colour(yarn.colour));
+                colours.collect()
+            }
+        };
+        let regions = match (colouring, design.structure()) {
+            (Colouring::Regions, Structure::Regions(regions)) => {
+                let colours = (regions.palette().iter().enumerate())
+                    .map(|(index, region)| colour(region_colour(index, region)));
+                colours.collect()
+            }
+            _ => Vec::new(),
         };
         Self {
             yarns,
+            regions,
             warp_up: colour(Srgb(0, 0, 0)),
             weft_up: colour(Srgb(255, 255, 255)),
         }
@@ -162,6 +184,10 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
             YarnMap::Order(_) => Some(self.colours.yarn(self.design.weft_yarn(self.first, pick))),
             YarnMap::Crossings(_) => None,
         };
+        let map = match self.design.structure() {
+            Structure::Regions(regions) if !self.colours.regions.is_empty() => Some(regions.map()),
+            _ => None,
+        };
         let mut column = 0;
         while column < self.columns {
             let end = self.first + column as i64;
@@ -180,7 +206,14 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
                 }
                 let up = word >> (home % 64) & 1 == 1;
                 let at = column + step as usize;
-                let known = if up { self.ends.get(at).copied() } else { weft };
+                let known = match map {
+                    Some(map) => {
+                        let region = map.get(home, home_pick);
+                        self.colours.regions.get(usize::from(region)).copied()
+                    }
+                    None if up => self.ends.get(at).copied(),
+                    None => weft,
+                };
                 let colour = known.unwrap_or_else(|| {
                     let end = end + i64::from(step);
                     self.colours.yarn(if up {
@@ -200,7 +233,9 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
-    use crate::design::{Family, Lattice, Repeat, Sett, Structure, Yarn, YarnMaps, usual_sett};
+    use crate::design::{
+        Family, Fill, Grid, Lattice, Regions, Repeat, Sett, Yarn, YarnMaps, usual_sett,
+    };
 
     fn design(lattice: Lattice) -> Design {
         let yarn = |colour| Yarn::new("y", Family::Cotton, colour);
@@ -287,5 +322,27 @@ mod tests {
         let plain = design.with_structure(Structure::Pattern(weave)).unwrap();
         let grey = swatch(&plain, &plain.weave(), window(1), Colouring::Structure)[0];
         assert_eq!(grey, [188, 188, 188, 255]);
+    }
+
+    #[test]
+    fn regions_show_their_own_colour_or_one_apart_from_their_neighbours() {
+        let fill = || Fill::by_notation("2/2 twill").unwrap();
+        let mut named = Region::new("ground", fill());
+        named.colour = Some(Srgb(9, 90, 200));
+        let palette = vec![named, Region::new("figure", fill())];
+        let map = Grid::from_fn(5, 4, |end, _| u16::from(end > 2)).unwrap();
+        let artwork = Structure::Regions(Regions::new(map, palette, None).unwrap());
+        let design = design(Lattice::default()).with_structure(artwork).unwrap();
+        let window = SwatchWindow {
+            end: 0,
+            pick: 0,
+            size: [5, 1],
+            level: 0,
+        };
+        let show = |colouring| swatch(&design, &design.weave(), window, colouring);
+        let pixels = show(Colouring::Regions);
+        assert_eq!(pixels[0], [9, 90, 200, 255]);
+        assert!(pixels[4] != pixels[0] && pixels[3] == pixels[4]);
+        assert_ne!(show(Colouring::Yarns), pixels);
     }
 }

@@ -16,9 +16,9 @@ use super::picture::{Pass, camera, lights};
 use super::prepare::coloured;
 use super::request::LightChoice;
 use super::{StillError, StillRequest};
-use crate::cloth::expected::colours_on_top;
-use crate::cloth::{FaceTable, YarnClasses, neighbourhood};
-use crate::design::{Design, Positions, WeavePattern, Yarn, YarnId, YarnMap};
+use crate::cloth::colour::colours_on_top;
+use crate::cloth::{FaceRelief, FaceTable, YarnClasses, neighbourhood};
+use crate::design::{Design, Positions, WeavePattern, YarnId, YarnMap};
 use crate::exemplar::Pair;
 use crate::job::Job;
 use crate::render::{Camera, Tone, View};
@@ -31,11 +31,9 @@ const MOST_SAMPLES: usize = 4;
 const MOST_TABLES: usize = 24;
 /// Pairs of yarns whose colours are worked out in advance.
 const MOST_PAIRS: usize = 1024;
-/// Diameter over pitch where there are too many pairs to ask each.
-const USUAL_COVER: f32 = 0.85;
 /// Share of the cloth's mean colour that the hairs of wool lay over every yarn, and what
 /// wool's hairs are, 1/mm.
-const VEIL: f32 = 0.08;
+const VEIL: f32 = 0.03;
 const WOOLLY: f32 = 2.6;
 /// Threads whose yarns are asked for the cloth's mean colour.
 const MOST_ASKED: usize = 4096;
@@ -47,34 +45,57 @@ const BRIGHTEST: f32 = 2.0;
 #[derive(Default)]
 pub struct SightTables {
     catalogue: std::sync::OnceLock<Catalogue>,
+    reliefs: Mutex<Vec<(ReliefKey, Arc<FaceRelief>)>>,
     kept: Mutex<Vec<(TableKey, Arc<FaceTable>)>>,
 }
 
 #[derive(Clone, PartialEq)]
-struct TableKey {
+struct ReliefKey {
     pair: Pair,
     pitch: Vec2,
-    light: LightChoice,
     back: bool,
+}
+
+#[derive(Clone, PartialEq)]
+struct TableKey {
+    relief: ReliefKey,
+    light: LightChoice,
 }
 
 impl SightTables {
     fn get(&self, key: &TableKey, view: View) -> Result<Arc<FaceTable>, StillError> {
-        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, table)) = lock().iter().find(|(known, _)| known == key) {
-            return Ok(Arc::clone(table));
+        if let Some(table) = find(&self.kept, key) {
+            return Ok(table);
         }
-        let catalogue = self.catalogue.get_or_init(Catalogue::standard);
-        let rig = lights(&key.light, view)?;
-        let table = FaceTable::new(catalogue, &key.pair, key.pitch, &rig, key.back);
-        let table = Arc::new(table);
-        let mut kept = lock();
-        if kept.len() >= MOST_TABLES {
-            kept.remove(0);
-        }
-        kept.push((key.clone(), Arc::clone(&table)));
+        let relief = find(&self.reliefs, &key.relief).unwrap_or_else(|| {
+            let catalogue = self.catalogue.get_or_init(Catalogue::standard);
+            let ReliefKey { pair, pitch, back } = &key.relief;
+            let relief = Arc::new(FaceRelief::new(catalogue, pair, *pitch, *back));
+            keep(&self.reliefs, &key.relief, &relief);
+            relief
+        });
+        let table = Arc::new(FaceTable::new(&relief, &lights(&key.light, view)?));
+        keep(&self.kept, key, &table);
         Ok(table)
     }
+}
+
+/// Things made once, by what they were made for.
+type Kept<K, T> = Mutex<Vec<(K, Arc<T>)>>;
+
+fn find<K: PartialEq, T>(kept: &Kept<K, T>, key: &K) -> Option<Arc<T>> {
+    let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    let (_, found) = kept.iter().find(|(known, _)| known == key)?;
+    Some(Arc::clone(found))
+}
+
+/// Keeps one thing more; the oldest gives way.
+fn keep<K: Clone, T>(kept: &Kept<K, T>, key: &K, thing: &Arc<T>) {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.len() >= MOST_TABLES {
+        kept.remove(0);
+    }
+    kept.push((key.clone(), Arc::clone(thing)));
 }
 
 /// Draws a design at first sight.
@@ -175,20 +196,21 @@ impl FirstSight {
         let tables = (classes.pairs.iter())
             .map(|pair| {
                 let key = TableKey {
-                    pair: pair.clone(),
-                    pitch: classes.pitch,
+                    relief: ReliefKey {
+                        pair: pair.clone(),
+                        pitch: classes.pitch,
+                        back: request.view.turns_over(),
+                    },
                     light: request.light.clone(),
-                    back: request.view.turns_over(),
                 };
                 self.tables.get(&key, request.view)
             })
             .collect::<Result<Vec<_>, _>>()?;
         let yarns = design.yarns();
-        let cover = |yarn: &Yarn| yarn.diameter() / classes.pitch.min_element();
         let colours = if yarns.len() * yarns.len() <= MOST_PAIRS {
             (yarns.iter())
                 .flat_map(|warp| yarns.iter().map(move |weft| (warp, weft)))
-                .map(|(warp, weft)| colours_on_top(warp, weft, 0.5 * (cover(warp) + cover(weft))))
+                .map(|(warp, weft)| colours_on_top(warp, weft))
                 .collect()
         } else {
             Vec::new()
@@ -340,9 +362,9 @@ impl Sight<'_> {
         let known = self
             .colours
             .get(usize::from(warp.0) * yarns + usize::from(weft.0));
-        let colours = known.copied().unwrap_or_else(|| {
-            colours_on_top(self.design.yarn(warp), self.design.yarn(weft), USUAL_COVER)
-        });
+        let colours = known
+            .copied()
+            .unwrap_or_else(|| colours_on_top(self.design.yarn(warp), self.design.yarn(weft)));
         colours.map(|colour| colour + self.veil)
     }
 

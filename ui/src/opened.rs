@@ -17,6 +17,8 @@ pub const DEFAULT_PRESET: &str = "default";
 pub struct Opened {
     pub design: Arc<Design>,
     pub warnings: Vec<String>,
+    /// The file it is from; `None` = it came with the program.
+    pub path: Option<PathBuf>,
 }
 
 impl Opened {
@@ -31,6 +33,7 @@ impl Opened {
             face_down: image.face_down,
             ..LoadOptions::default()
         };
+        let mut path = None;
         let imported = match presets::design(argument) {
             Some(design) => {
                 let mut design = design?;
@@ -45,20 +48,23 @@ impl Opened {
             None if !argument.contains(['.', '/', '\\']) && !Path::new(argument).exists() => {
                 return Err(no_such_preset(argument));
             }
-            None => formats::load(Path::new(argument), &options)?,
+            None => {
+                path = Some(PathBuf::from(argument));
+                formats::load(Path::new(argument), &options)?
+            }
         };
         let files = MapFiles {
             warp: image.warp_map.clone(),
             weft: image.weft_map.clone(),
         };
         let Imported { design, warnings } = formats::with_map_files(imported, &files, &options)?;
-        Ok(Self::new(design, warnings))
+        Ok(Self::new(design, warnings, path))
     }
 
     /// Opens a preset by name.
     pub fn preset(name: &str) -> anyhow::Result<Self> {
         match presets::design(name) {
-            Some(design) => Ok(Self::new(design?, Vec::new())),
+            Some(design) => Ok(Self::new(design?, Vec::new(), None)),
             None => Err(no_such_preset(name)),
         }
     }
@@ -66,16 +72,17 @@ impl Opened {
     /// Opens a file.
     pub fn file(path: PathBuf) -> anyhow::Result<Self> {
         let Imported { design, warnings } = formats::load(&path, &LoadOptions::default())?;
-        Ok(Self::new(design, warnings))
+        Ok(Self::new(design, warnings, Some(path)))
     }
 
-    fn new(mut design: Design, warnings: Vec<String>) -> Self {
+    fn new(mut design: Design, warnings: Vec<String>, path: Option<PathBuf>) -> Self {
         if design.name.trim().is_empty() {
             design.name = "untitled".to_owned();
         }
         Self {
             design: Arc::new(design),
             warnings,
+            path,
         }
     }
 

@@ -42,7 +42,7 @@ pub const TOAST_WIDTH: f32 = 340.0;
 /// Surround of the cloth, L* 50 in both themes.
 pub const SURROUND: Color32 = Color32::from_gray(119);
 /// The one accent.
-pub const ACCENT: Color32 = Color32::from_rgb(58, 124, 214);
+pub const ACCENT: Color32 = Color32::from_rgb(53, 117, 206);
 /// Grid lines over a drawdown.
 pub const GRID_LINE: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 70);
 /// Every fourth grid line.
@@ -175,7 +175,7 @@ fn visuals(theme: Theme, palette: Palette) -> egui::Visuals {
     visuals.weak_text_color = Some(palette.quiet);
     visuals.warn_fg_color = palette.warning;
     visuals.error_fg_color = palette.error;
-    visuals.hyperlink_color = ACCENT;
+    visuals.hyperlink_color = palette.text;
     visuals.selection.bg_fill = ACCENT;
     visuals.selection.stroke = Stroke::new(1.0, Color32::WHITE);
     for (widget, fill) in [
@@ -221,7 +221,19 @@ mod tests {
                 }
             }
         }
-        assert!(contrast(ACCENT, Color32::WHITE) >= 3.9);
+        assert!(contrast(ACCENT, Color32::WHITE) >= 4.5);
+    }
+
+    #[test]
+    fn marks_and_the_focus_are_seen() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = Palette::of(theme);
+            assert!(contrast(palette.ink, palette.paper) >= 4.5);
+            // What is no text needs 3 (WCAG 2.2, 1.4.11).
+            for plane in [palette.deep, palette.panel] {
+                assert!(contrast(ACCENT, plane) >= 3.0, "{theme:?} {plane:?}");
+            }
+        }
     }
 
     #[test]

@@ -251,7 +251,7 @@ impl Part {
                 FirstEnd::Left => end + 1,
                 FirstEnd::Right => ends - end,
             };
-            if number % 4 == 0 || number == 1 {
+            if number.is_multiple_of(4) || number == 1 {
                 let middle = x + self.cell * (column as f32 + 0.5);
                 page.number([middle, y - 2.0], 3.0, number);
             }
@@ -263,7 +263,7 @@ impl Part {
                 FirstPick::Bottom => pick + 1,
                 FirstPick::Top => picks - pick,
             };
-            if number % 4 == 0 || number == 1 {
+            if number.is_multiple_of(4) || number == 1 {
                 let middle = y + self.cell * (row as f32 + 0.5);
                 page.number([right, middle], 3.0, number);
             }

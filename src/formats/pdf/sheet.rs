@@ -182,7 +182,8 @@ impl Page {
         for (strong, pen) in [(false, 0.15), (true, 0.5)] {
             self.content.set_line_width(pen);
             self.content.set_stroke_gray(if strong { 0.2 } else { 0.6 });
-            let drawn = |place: &u32, last: u32| (place % 4 == 0 || *place == last) == strong;
+            let drawn =
+                |place: &u32, last: u32| (place.is_multiple_of(4) || *place == last) == strong;
             for column in (0..=columns).filter(|place| drawn(place, columns)) {
                 let x = (x + cell * column as f32) * POINTS;
                 self.content

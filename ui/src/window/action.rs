@@ -2,7 +2,7 @@
 //! obeys them in one place, in order, after the panes were shown.
 
 use pickglass::design::YarnId;
-use pickglass::edit::Edit;
+use pickglass::edit::{Cells, Edit};
 
 use super::panes::Pane;
 use super::toasts::Grade;
@@ -18,6 +18,13 @@ pub enum Action {
     Begin(String),
     /// Back to where the gesture began, and on with it: a line whose end is dragged.
     Restart,
+    /// Move these crossings by so many ends and picks; region `behind` is left there where
+    /// regions are moved, else weft.
+    Move {
+        cells: Box<Cells>,
+        by: (i64, i64),
+        behind: Option<u16>,
+    },
     /// The gesture is complete.
     Finish,
     /// The gesture is given up: back to where it began.

@@ -6,6 +6,7 @@ use pickglass::edit::Document;
 
 use super::action::Action;
 use super::asking::Asking;
+use super::autosave::{Autosave, RecoveryFolder};
 use super::crossing;
 use super::draft::DraftPane;
 use super::export::Export;
@@ -21,6 +22,7 @@ use super::start::StartPage;
 use super::status::{self, Cancel, Status};
 use super::toasts::Toasts;
 use super::tools;
+use super::volume::VolumeExport;
 use crate::opened::Opened;
 use crate::tokens;
 
@@ -29,6 +31,7 @@ use crate::tokens;
 pub struct AppOptions {
     pub preview: PreviewSettings,
     pub settings: SettingsFile,
+    pub recovery: RecoveryFolder,
 }
 
 /// The window's state.
@@ -40,7 +43,9 @@ pub struct App {
     pub(super) layout: Layout,
     pub(super) start: StartPage,
     pub(super) files: Files,
+    pub(super) autosave: Autosave,
     pub(super) export: Export,
+    pub(super) volume: VolumeExport,
     pub(super) asking: Asking,
     pub(super) palette: CommandPalette,
     pub(super) toasts: Toasts,
@@ -55,6 +60,9 @@ pub struct App {
     pub(super) told_title: String,
     frames_left: Option<u32>,
     ctx: egui::Context,
+    /// Seconds spent in each frame.
+    #[cfg(test)]
+    pub(super) spent: Vec<f64>,
 }
 
 impl App {
@@ -77,7 +85,9 @@ impl App {
             layout: Layout::from_kept(settings.layout.take()),
             start: StartPage::default(),
             files: Files::default(),
+            autosave: Autosave::new(ctx, options.recovery),
             export: Export::default(),
+            volume: VolumeExport::default(),
             asking: Asking::default(),
             palette: CommandPalette::default(),
             toasts: Toasts::default(),
@@ -89,12 +99,14 @@ impl App {
             told_title: String::new(),
             frames_left: None,
             ctx: ctx.clone(),
+            #[cfg(test)]
+            spent: Vec::new(),
         };
         if let Some(wrong) = wrong {
             app.warn(wrong, "Nothing of your designs is lost.");
         }
         if let Some(opened) = opened {
-            app.take_design(&opened, None);
+            app.take_design(&opened);
         }
         Ok(app)
     }
@@ -115,11 +127,9 @@ impl App {
         let at = document.map_or(0, Document::position);
         Situation {
             open: document.is_some(),
-            shaft_draft: document.is_some_and(super::draft::is_shaft_draft),
             undo: document.filter(|d| d.can_undo()).and_then(|_| name(at)),
             redo: document.filter(|d| d.can_redo()).and_then(|_| name(at + 1)),
             selection: self.draft.selection().is_some(),
-            clip: self.draft.has_clip(),
             view: self.preview.view,
             light: &self.preview.light,
             paused: self.preview.paused,
@@ -159,9 +169,9 @@ impl App {
     fn status_ui(&mut self, ui: &mut egui::Ui) {
         let phase = self.preview.phase();
         let document = self.session.as_ref().map(|session| &session.document);
-        let crossing = document
-            .zip(self.hover)
-            .and_then(|(document, at)| crossing::describe(document, at));
+        let crossing = document.zip(self.hover).and_then(|(document, at)| {
+            crossing::describe(document, at, self.draft.show.arrangement)
+        });
         let cancel = status::show(
             ui,
             &Status {
@@ -170,7 +180,7 @@ impl App {
                 phase: &phase,
                 building: self.preview.building(),
                 paused: self.preview.paused,
-                export: self.export.progress(),
+                export: self.export.progress().or_else(|| self.volume.progress()),
                 files: self.files.at_work(),
                 crossing: crossing.as_deref(),
                 tool: self.draft.tool_words(),
@@ -178,7 +188,10 @@ impl App {
         );
         match cancel {
             Some(Cancel::Preview) => self.preview.pause(),
-            Some(Cancel::Export) => self.export.cancel(),
+            Some(Cancel::Export) => {
+                self.export.cancel();
+                self.volume.cancel();
+            }
             None => {}
         }
     }
@@ -196,11 +209,15 @@ impl App {
             .exact_size(tokens::TOOLS_WIDTH)
             .resizable(false)
             .show(ui, |ui| tools::show(ui, draft, document, actions));
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+        let ground = Frame::NONE.fill(tokens::Palette::current(ui).panel);
+        CentralPanel::default().frame(ground).show(ui, |ui| {
             self.layout.show(ui, &mut |ui, pane| match pane {
                 Pane::Draft => draft.show(ui, document, actions),
                 Pane::Cloth => preview.show(ui, document, actions),
-                other => panes.show(other, ui, document, actions),
+                other => {
+                    let room = Frame::NONE.inner_margin(tokens::GAP);
+                    room.show(ui, |ui| panes.show(other, ui, document, actions));
+                }
             });
         });
     }
@@ -256,13 +273,39 @@ fn hovered_ui(ctx: &egui::Context, pane: Rect) {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        #[cfg(test)]
+        let begun = std::time::Instant::now();
+        self.frame(ui);
+        #[cfg(test)]
+        self.spent.push(begun.elapsed().as_secs_f64());
+    }
+
+    fn on_exit(&mut self) {
+        let ctx = self.ctx.clone();
+        self.keep_settings(&ctx);
+        let modified =
+            (self.session.as_ref()).is_some_and(|session| session.document.is_modified());
+        if !modified || self.may_close {
+            self.autosave.leave();
+        }
+        self.autosave.finish();
+    }
+}
+
+impl App {
+    /// What was finished is taken, keys are obeyed, all is shown, and what the panes asked
+    /// for is done.
+    fn frame(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut actions = Vec::new();
         self.preview.poll(&ctx, &mut actions);
         self.pick_up(&ctx);
-        if !self.asking.is_open()
-            && let Some(command) = menu::pressed(&ctx)
-        {
+        if let Some(session) = &self.session {
+            self.autosave.keep(&ctx, session);
+        }
+        // What is asked is answered before anything else is done.
+        let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
+        if !asked && let Some(command) = menu::pressed(&ctx) {
             self.obey(&ctx, command);
         }
         self.ask_before_closing(&ctx);
@@ -280,6 +323,7 @@ impl eframe::App for App {
         self.toasts.show(&ctx, pane.right_bottom());
         self.files.show(&ctx);
         self.export.show(&ctx);
+        self.volume.show(&ctx);
         self.asking_ui(&ctx);
         let mut palette = std::mem::take(&mut self.palette);
         let command = palette.show(&ctx, &self.situation());
@@ -294,23 +338,20 @@ impl eframe::App for App {
         self.count_frame(&ctx);
     }
 
-    fn on_exit(&mut self) {
-        let ctx = self.ctx.clone();
-        self.keep_settings(&ctx);
-    }
-}
-
-impl App {
     fn start_ui(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         let mut choice = None;
         CentralPanel::default().show(ui, |ui| {
-            choice = self.start.show(ui, &self.settings.recent);
+            choice = self
+                .start
+                .show(ui, &self.settings.recent, &self.autosave.found);
         });
         match choice {
             Some(super::start::Choice::Command(command)) => self.obey(&ctx, command),
             Some(super::start::Choice::Preset(name)) => self.files.open_preset(&ctx, name),
             Some(super::start::Choice::Recent(path)) => self.files.open(&ctx, path),
+            Some(super::start::Choice::Recover(found)) => self.files.recover(&ctx, &found),
+            Some(super::start::Choice::Discard(path)) => self.autosave.discard(&path),
             None => {}
         }
     }

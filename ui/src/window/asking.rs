@@ -1,14 +1,14 @@
 //! Questions that must be answered before something goes on: unsaved work, a drawdown that
-//! follows from a draft, a new size. One at a time, each with the least harmful answer
+//! follows from a draft, the forms of the weave menu. One at a time, each with the least harmful answer
 //! first.
 
 use std::path::PathBuf;
 
-use egui::{DragValue, Id, Modal, RichText};
-use pickglass::design::MAX_CROSSINGS;
-use pickglass::edit::{Document, Edit};
+use egui::{Id, Modal, RichText};
+use pickglass::edit::Edit;
 
-use crate::tokens::{self, Palette};
+use super::forms::{Filled, Form};
+use crate::tokens;
 
 /// What follows when the open design may be left.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +29,8 @@ enum Question {
     Unsaved(Next),
     /// An edit was refused; other edits that would do it.
     Refused { why: String, remedies: Vec<Edit> },
-    /// How many ends and picks.
-    Size { ends: u32, picks: u32 },
+    /// A form of the weave menu.
+    Form(Form),
 }
 
 /// An answer.
@@ -41,8 +41,8 @@ pub enum Answer {
     Discard(Next),
     /// Do this instead of what was refused, and from now on without asking if `always`.
     Instead { edit: Edit, always: bool },
-    /// An edit from a form.
-    Edit(Edit),
+    /// What a form came to: the entry of the history, and its edits.
+    Filled(&'static str, Vec<Edit>),
 }
 
 /// The question that is asked, and what waits for a save.
@@ -56,11 +56,6 @@ pub struct Asking {
 }
 
 impl Asking {
-    /// Whether a question is open.
-    pub fn is_open(&self) -> bool {
-        self.question.is_some()
-    }
-
     /// Asks whether unsaved work is to be saved.
     pub fn about_unsaved(&mut self, next: Next) {
         self.question = Some(Question::Unsaved(next));
@@ -71,13 +66,9 @@ impl Asking {
         self.question = Some(Question::Refused { why, remedies });
     }
 
-    /// Asks for a size.
-    pub fn about_size(&mut self, document: &Document) {
-        let design = document.design();
-        self.question = Some(Question::Size {
-            ends: design.ends(),
-            picks: design.picks(),
-        });
+    /// Shows a form.
+    pub fn fill_in(&mut self, form: Form) {
+        self.question = Some(Question::Form(form));
     }
 
     /// Shows the question; returns the answer.
@@ -92,9 +83,11 @@ impl Asking {
                 Question::Refused { why, remedies } => {
                     refused_ui(ui, why, remedies, &mut answer, &mut close);
                 }
-                Question::Size { ends, picks } => {
-                    size_ui(ui, ends, picks, &mut answer, &mut close);
-                }
+                Question::Form(form) => match form.show(ui) {
+                    Filled::Open => {}
+                    Filled::Closed => close = true,
+                    Filled::Done(name, edits) => answer = Some(Answer::Filled(name, edits)),
+                },
             }
         });
         if answer.is_some() || close || modal.should_close() {
@@ -165,44 +158,4 @@ fn refused_ui(
         let always = matches!(edit, Edit::DeriveDraft { .. });
         *answer = Some(Answer::Instead { edit, always });
     }
-}
-
-fn size_ui(
-    ui: &mut egui::Ui,
-    ends: &mut u32,
-    picks: &mut u32,
-    answer: &mut Option<Answer>,
-    close: &mut bool,
-) {
-    heading(ui, "Resize");
-    let quiet = Palette::current(ui).quiet;
-    ui.label(
-        RichText::new("The design repeats into what is new; the rest is cut off.").color(quiet),
-    );
-    ui.add_space(tokens::GAP);
-    egui::Grid::new("size").num_columns(2).show(ui, |ui| {
-        for (name, count) in [("Ends", &mut *ends), ("Picks", &mut *picks)] {
-            let label = ui.label(name);
-            ui.add(DragValue::new(count).range(1..=65_535))
-                .labelled_by(label.id);
-            ui.end_row();
-        }
-    });
-    let crossings = u64::from(*ends) * u64::from(*picks);
-    let fits = crossings <= MAX_CROSSINGS;
-    if !fits {
-        let error = Palette::current(ui).error;
-        let text = format!("Error: {crossings} crossings; the most is {MAX_CROSSINGS}.");
-        ui.label(RichText::new(text).color(error));
-    }
-    ui.add_space(tokens::PAD);
-    ui.horizontal(|ui| {
-        if ui.add_enabled(fits, egui::Button::new("Resize")).clicked() {
-            *answer = Some(Answer::Edit(Edit::Resize {
-                ends: *ends,
-                picks: *picks,
-            }));
-        }
-        *close |= ui.button("Cancel").clicked();
-    });
 }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use egui::{Id, Key, Modal, RichText};
 use pickglass::design::Design;
-use pickglass::formats::{self, SaveOptions};
+use pickglass::edit::recovery::{self, Found};
+use pickglass::formats::pdf::{self, PdfOptions};
+use pickglass::formats::{self, SaveOptions, atomic};
 
 use super::session;
 use super::task::{Outcome, Task};
@@ -27,7 +29,14 @@ const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
 /// What came of a file.
 pub enum FileEvent {
     /// A design was read, from a file or of the program's own.
-    Opened(Box<Opened>, Option<PathBuf>),
+    Opened(Box<Opened>),
+    /// Unsaved work of an earlier run, the copy it is from, and its file if it has one.
+    Recovered {
+        design: Box<Design>,
+        lost: Option<String>,
+        copy: PathBuf,
+        original: Option<PathBuf>,
+    },
     /// This state of the document is in its file.
     Saved { path: PathBuf, state: u64 },
     /// A copy was written; what of the design is not in it, one line each.
@@ -44,6 +53,7 @@ enum Purpose {
     Open,
     Save,
     Export,
+    Print,
 }
 
 impl Purpose {
@@ -52,6 +62,7 @@ impl Purpose {
             Self::Open => "Open by path",
             Self::Save => "Save as",
             Self::Export => "Export the draft",
+            Self::Print => "Print to PDF",
         }
     }
 
@@ -60,6 +71,7 @@ impl Purpose {
             Self::Open => "Path of a .ron, .wif or image file",
             Self::Save => "Path of a .ron file",
             Self::Export => "Path that ends in .wif, .png, .bmp, .tif or .gif",
+            Self::Print => "Path of a .pdf file",
         }
     }
 
@@ -68,6 +80,7 @@ impl Purpose {
             Self::Open => "Open",
             Self::Save => "Save",
             Self::Export => "Export",
+            Self::Print => "Print",
         }
     }
 
@@ -88,6 +101,11 @@ impl Purpose {
             Self::Export => dialog
                 .set_title("Export the draft")
                 .add_filter("Drafts and loom images", &EXPORTED)
+                .set_file_name(proposed)
+                .save_file(),
+            Self::Print => dialog
+                .set_title("Print to PDF")
+                .add_filter("PDF", &["pdf"])
                 .set_file_name(proposed)
                 .save_file(),
         }
@@ -123,6 +141,8 @@ pub struct Files {
     typed: Option<TypedPath>,
     reading: Option<(String, Task<FileEvent>)>,
     writing: Option<(String, Task<FileEvent>)>,
+    /// Paths are typed: no dialog of the system is tried.
+    pub typed_only: bool,
     /// A path that was chosen for writing; the app hands over the design then.
     chosen: Option<(Purpose, PathBuf)>,
 }
@@ -143,8 +163,17 @@ impl Files {
         self.ask_for(ctx, Purpose::Export, proposed);
     }
 
+    /// Asks where to print to.
+    pub fn ask_print(&mut self, ctx: &egui::Context, proposed: String) {
+        self.ask_for(ctx, Purpose::Print, proposed);
+    }
+
     fn ask_for(&mut self, ctx: &egui::Context, purpose: Purpose, proposed: String) {
         if self.dialog.is_some() {
+            return;
+        }
+        if self.typed_only {
+            self.type_for(purpose, proposed, "Type or paste it.");
             return;
         }
         let offered = proposed.clone();
@@ -183,20 +212,40 @@ impl Files {
     /// Opens a preset by name.
     pub fn open_preset(&mut self, ctx: &egui::Context, name: &str) {
         let preset = name.to_owned();
-        self.read(ctx, name, move || Ok((Opened::preset(&preset)?, None)));
+        self.read(ctx, name, move || Opened::preset(&preset));
     }
 
     /// Opens a new design.
     pub fn open_blank(&mut self, ctx: &egui::Context) {
-        self.read(ctx, "a new design", || Ok((session::blank()?, None)));
+        self.read(ctx, "a new design", session::blank);
     }
 
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
-        self.read(ctx, &name.to_string_lossy(), move || {
-            Ok((Opened::file(path.clone())?, Some(path)))
-        });
+        self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
+    }
+
+    /// Opens unsaved work of an earlier run.
+    pub fn recover(&mut self, ctx: &egui::Context, found: &Found) {
+        let Found {
+            path,
+            name,
+            original,
+            ..
+        } = found.clone();
+        let work = move || match recovery::load(&path) {
+            Ok(recovered) => FileEvent::Recovered {
+                design: Box::new(recovered.design),
+                lost: recovered.lost,
+                copy: path,
+                original,
+            },
+            Err(error) => FileEvent::OpenFailed(error.to_string()),
+        };
+        if let Ok(task) = Task::start(ctx, "reading", work) {
+            self.reading = Some((name, task));
+        }
     }
 
     /// The file that is being read or written, if any, in words.
@@ -216,10 +265,10 @@ impl Files {
         &mut self,
         ctx: &egui::Context,
         name: &str,
-        work: impl FnOnce() -> anyhow::Result<(Opened, Option<PathBuf>)> + Send + 'static,
+        work: impl FnOnce() -> anyhow::Result<Opened> + Send + 'static,
     ) {
         let work = move || match work() {
-            Ok((opened, path)) => FileEvent::Opened(Box::new(opened), path),
+            Ok(opened) => FileEvent::Opened(Box::new(opened)),
             Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
         };
         // A newer choice replaces one that is still being read.
@@ -237,10 +286,15 @@ impl Files {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
         let work = move || {
             let Writing { design, state } = what;
-            match formats::save(&design, &path, &SaveOptions::default()) {
-                Ok(lost) if purpose == Purpose::Export => FileEvent::Exported { path, lost },
-                Ok(_) => FileEvent::Saved { path, state },
-                Err(error) => FileEvent::SaveFailed(error.to_string()),
+            let done = match purpose {
+                Purpose::Print => print(&design, &path).map(|()| Vec::new()),
+                _ => formats::save(&design, &path, &SaveOptions::default())
+                    .map_err(|error| error.to_string()),
+            };
+            match done {
+                Ok(_) if purpose == Purpose::Save => FileEvent::Saved { path, state },
+                Ok(lost) => FileEvent::Exported { path, lost },
+                Err(error) => FileEvent::SaveFailed(error),
             }
         };
         if let Ok(task) = Task::start(ctx, "writing", work) {
@@ -313,6 +367,7 @@ impl Files {
             Purpose::Open => self.open(ctx, path),
             Purpose::Save => self.chosen = Some((purpose, with_ending(path, "ron"))),
             Purpose::Export => self.chosen = Some((purpose, with_ending(path, "wif"))),
+            Purpose::Print => self.chosen = Some((purpose, with_ending(path, "pdf"))),
         }
         ctx.request_repaint();
     }
@@ -374,6 +429,13 @@ fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &m
         *done |= ui.add_enabled(ready, egui::Button::new(name)).clicked();
         *close |= ui.button("Cancel").clicked();
     });
+}
+
+/// Writes a design as pages.
+fn print(design: &Design, path: &Path) -> Result<(), String> {
+    let pages = pdf::write(design, &design.weave(), &PdfOptions::default());
+    let bytes = pages.map_err(|error| error.to_string())?;
+    atomic::write(path, &bytes).map_err(|error| error.to_string())
 }
 
 /// The path with this ending where it has none.

@@ -131,3 +131,20 @@ pub fn tool(painter: &Painter, button: Rect, tool: Tool, colour: Color32) {
         }
     }
 }
+
+/// Draws the sign of a mirror: two arrows apart, across (0) or along (1).
+pub fn mirror(painter: &Painter, button: Rect, axis: usize, colour: Color32) {
+    let rect = Rect::from_center_size(button.center(), vec2(16.0, 16.0));
+    let stroke = Stroke::new(1.5, colour);
+    let turned = |(x, y): (f32, f32)| if axis == 0 { (x, y) } else { (y, x) };
+    for path in [
+        [(0.5, 0.0), (0.5, 0.5), (0.5, 1.0)],
+        [(0.22, 0.3), (0.02, 0.5), (0.22, 0.7)],
+        [(0.78, 0.3), (0.98, 0.5), (0.78, 0.7)],
+    ] {
+        lines(painter, rect, stroke, &path.map(turned));
+    }
+    for shaft in [[(0.02, 0.5), (0.36, 0.5)], [(0.64, 0.5), (0.98, 0.5)]] {
+        lines(painter, rect, stroke, &shaft.map(turned));
+    }
+}

@@ -63,12 +63,6 @@ impl Layout {
             .make_active(|_, tile| matches!(tile, Tile::Pane(found) if *found == pane));
     }
 
-    /// Whether a pane can be seen.
-    pub fn shows(&self, pane: Pane) -> bool {
-        let is = |id: &TileId| self.tree.tiles.get_pane(id) == Some(&pane);
-        self.tree.active_tiles().iter().any(is)
-    }
-
     /// Lays the panes out and shows each by `show`.
     pub fn show(&mut self, ui: &mut Ui, show: &mut dyn FnMut(&mut Ui, Pane)) {
         self.tree.ui(&mut Shown { show }, ui);

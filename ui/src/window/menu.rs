@@ -23,12 +23,10 @@ pub enum Choice {
 /// What the menus show as chosen, and what can be done now.
 pub struct Situation<'s> {
     pub open: bool,
-    pub shaft_draft: bool,
     /// What would be undone and redone.
     pub undo: Option<String>,
     pub redo: Option<String>,
     pub selection: bool,
-    pub clip: bool,
     pub view: View,
     pub light: &'s LightChoice,
     pub paused: bool,
@@ -62,7 +60,6 @@ impl Situation<'_> {
             | Command::Clear
             | Command::Deselect
             | Command::CropToSelection => self.open && self.selection,
-            Command::Paste => self.open && self.clip,
             _ => self.open,
         }
     }
@@ -122,6 +119,11 @@ pub fn show(ui: &mut egui::Ui, situation: &Situation<'_>, title: &str) -> Option
 
 fn menu_ui(ui: &mut egui::Ui, menu: Menu, situation: &Situation<'_>) -> Option<Choice> {
     let mut choice = None;
+    // The longest menu fits a window of 640 points.
+    let spacing = ui.spacing_mut();
+    spacing.item_spacing.y = 0.0;
+    spacing.interact_size.y = 5.0 * tokens::GRID;
+    spacing.button_padding.y = 0.5 * tokens::GRID;
     for row in TABLE.iter().filter(|row| row.menu == menu) {
         if row.apart {
             ui.separator();
@@ -245,9 +247,22 @@ pub fn pressed(ctx: &egui::Context) -> Option<Command> {
         if alone && (typing || !ctx.input(|input| plain(input.modifiers, modifiers))) {
             return None;
         }
+        // In a text field, select all, undo and the like mean its text.
+        if typing && !outside_text(command) {
+            return None;
+        }
         ctx.input_mut(|input| input.consume_shortcut(shortcut))
             .then_some(command)
     })
+}
+
+/// Whether a command's keys act while a text is typed: those of files and of the palette.
+fn outside_text(command: Command) -> bool {
+    let menu = TABLE
+        .iter()
+        .find(|row| row.command == command)
+        .map(|row| row.menu);
+    matches!(menu, Some(Menu::File | Menu::Help))
 }
 
 fn count(modifiers: Modifiers) -> u32 {

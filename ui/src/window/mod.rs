@@ -1,24 +1,28 @@
 //! The window: paint a weave, watch the cloth.
 //!
 //! [`app`] holds the state and the frame; [`layout`] says where the panes lie. A pane
-//! changes nothing itself: it pushes [`action`]s, which [`obey`] does after all panes were
-//! shown, as it does the commands of menus and keys. [`draft`] is the pane one paints in,
+//! changes nothing itself: it pushes [`action`]s, which [`act`] does after all panes were
+//! shown; [`obey`] does the commands of menus and keys. [`draft`] is the pane one paints in,
 //! [`preview`] the cloth, whose [`worker`] draws on a thread of its own; the others are in
 //! [`panes`]. [`files`] reads and writes on further threads, so that the window never
 //! waits.
 
+mod act;
 mod action;
 mod app;
 mod asking;
+mod autosave;
 mod cloth;
 mod cloth_pane;
 mod crossing;
 mod draft;
 mod export;
 mod files;
+mod forms;
 mod icons;
 mod laid;
 mod layout;
+mod leaving;
 mod menu;
 mod obey;
 mod palette;
@@ -34,6 +38,8 @@ mod tests;
 mod toasts;
 mod tools;
 mod view;
+mod volume;
+mod weave;
 mod worker;
 
 use std::sync::Arc;
@@ -41,6 +47,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::opened::Opened;
 use app::AppOptions;
+use autosave::RecoveryFolder;
 use settings::SettingsFile;
 
 /// Why there is no window.
@@ -75,6 +82,7 @@ pub fn run(opened: Option<Opened>, smoke_frames: Option<u32>) -> Result<(), NoWi
         Box::new(move |cc| {
             let options = AppOptions {
                 settings: SettingsFile::of_user(),
+                recovery: RecoveryFolder::of_user(),
                 ..AppOptions::default()
             };
             let app = app::App::new(&cc.egui_ctx, opened, options)?;

@@ -55,7 +55,7 @@ impl CommandPalette {
                     .desired_width(f32::INFINITY),
             );
             field.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Find a command")
+                egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Command to find")
             });
             if !self.focused {
                 field.request_focus();

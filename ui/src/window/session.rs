@@ -25,11 +25,18 @@ pub struct Session {
 impl Session {
     /// A session of what was read. A file of another format is not written over: its
     /// design is saved under a new name.
-    pub fn of(opened: &Opened, path: Option<PathBuf>) -> Self {
-        let own = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "ron");
+    pub fn of(opened: &Opened) -> Self {
         Self {
             document: Document::new(Design::clone(&opened.design)),
-            path: path.filter(own),
+            path: opened.path.clone().filter(|path| own_format(path)),
+        }
+    }
+
+    /// A session of work that is in no file yet.
+    pub fn unsaved(design: Design, path: Option<PathBuf>) -> Self {
+        Self {
+            document: Document::unsaved(design),
+            path: path.filter(|path| own_format(path)),
         }
     }
 
@@ -67,6 +74,11 @@ impl Session {
     }
 }
 
+/// Whether a file is a design document, which holds all of a design.
+fn own_format(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "ron")
+}
+
 /// A 2/2 twill on four shafts in two cottons: something to draw on.
 pub fn blank() -> anyhow::Result<Opened> {
     let straight = Ties::from_rows((0..NEW_SIZE as u16).map(|thread| [thread % SHAFTS]));
@@ -87,5 +99,6 @@ pub fn blank() -> anyhow::Result<Opened> {
     Ok(Opened {
         design: Arc::new(design),
         warnings: Vec::new(),
+        path: None,
     })
 }

@@ -7,8 +7,10 @@ use egui::{
     Color32, Rect, RichText, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, vec2,
 };
 use pickglass::design::{Colouring, Design, SwatchWindow, swatch};
+use pickglass::edit::recovery::Found;
 use pickglass::formats::presets;
 
+use super::autosave::ago;
 use super::task::{Outcome, Task};
 use crate::command_table::{Command, row_of};
 use crate::tokens::{self, Palette};
@@ -25,6 +27,8 @@ pub enum Choice {
     Command(Command),
     Preset(&'static str),
     Recent(PathBuf),
+    Recover(Found),
+    Discard(PathBuf),
 }
 
 /// A preset's picture and what is written below it.
@@ -46,7 +50,12 @@ pub struct StartPage {
 
 impl StartPage {
     /// Shows the page.
-    pub fn show(&mut self, ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
+    pub fn show(
+        &mut self,
+        ui: &mut egui::Ui,
+        recent: &[PathBuf],
+        found: &[Found],
+    ) -> Option<Choice> {
         self.draw(ui.ctx());
         let mut choice = None;
         egui::ScrollArea::vertical()
@@ -57,6 +66,7 @@ impl StartPage {
                     .inner_margin(egui::Margin::symmetric(2 * tokens::PAD as i8, 0))
                     .show(ui, |ui| {
                         choice = begin_ui(ui);
+                        choice = recover_ui(ui, found).or(choice.take());
                         choice = recent_ui(ui, recent).or(choice.take());
                         choice = self.presets_ui(ui).or(choice.take());
                     });
@@ -131,6 +141,44 @@ fn begin_ui(ui: &mut egui::Ui) -> Option<Choice> {
         }
         ui.label(RichText::new("or drop a design, a draft or an image here").color(quiet));
     });
+    ui.add_space(2.0 * tokens::PAD);
+    choice
+}
+
+/// Work that an earlier run left unsaved.
+fn recover_ui(ui: &mut egui::Ui, found: &[Found]) -> Option<Choice> {
+    if found.is_empty() {
+        return None;
+    }
+    let palette = Palette::current(ui);
+    let mut choice = None;
+    ui.label(RichText::new("Unsaved work").text_style(egui::TextStyle::Heading));
+    ui.label(RichText::new("Pickglass ended before these were saved.").color(palette.quiet));
+    ui.add_space(tokens::GRID);
+    for copy in found {
+        ui.horizontal(|ui| {
+            let name = match copy.name.trim() {
+                "" => "untitled",
+                name => name,
+            };
+            if ui.button(format!("Recover {name}")).clicked() {
+                choice = Some(Choice::Recover(copy.clone()));
+            }
+            let discard = ui.button("Discard");
+            discard.widget_info(|| {
+                let label = format!("Discard {name}");
+                egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+            });
+            if discard.clicked() {
+                choice = Some(Choice::Discard(copy.path.clone()));
+            }
+            let from = match &copy.original {
+                Some(path) => format!("{} · {}", ago(copy.time), path.display()),
+                None => format!("{} · in no file yet", ago(copy.time)),
+            };
+            ui.add(egui::Label::new(RichText::new(from).color(palette.quiet)).truncate());
+        });
+    }
     ui.add_space(2.0 * tokens::PAD);
     choice
 }

@@ -1,7 +1,7 @@
 //! The palette at the left: tools, what painting changes, and with which yarns.
 
 use egui::{Button, Color32, Rect, RichText, Sense, Stroke, StrokeKind, vec2};
-use pickglass::design::{Srgb, Structure, YarnId};
+use pickglass::design::{Srgb, Structure, YarnId, region_colour};
 use pickglass::edit::Document;
 
 use super::action::{Action, Button as PaintButton};
@@ -52,8 +52,22 @@ fn tool_ui(ui: &mut egui::Ui, tool: Tool, on: bool) -> bool {
     let Some(row) = row_of(Command::Use(tool)) else {
         return false;
     };
+    let key = (row.shortcuts.first()).map(|key| ui.ctx().format_shortcut(key));
+    let tip = format!("{} ({})\n{}", row.label, key.unwrap_or_default(), row.tip);
+    let sign = |painter: &egui::Painter, rect, ink| icons::tool(painter, rect, tool, ink);
+    sign_button(ui, row.label, &tip, on, sign)
+}
+
+/// A button with a drawn sign; true when it was clicked.
+fn sign_button(
+    ui: &mut egui::Ui,
+    name: &str,
+    tip: &str,
+    on: bool,
+    sign: impl FnOnce(&egui::Painter, Rect, Color32),
+) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, row.label));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, name));
     let palette = Palette::current(ui);
     let (fill, ink) = if on {
         (tokens::ACCENT, Color32::WHITE)
@@ -68,33 +82,21 @@ fn tool_ui(ui: &mut egui::Ui, tool: Tool, on: bool) -> bool {
         ui.painter()
             .rect_stroke(rect, tokens::RADIUS, stroke, StrokeKind::Outside);
     }
-    icons::tool(ui.painter(), rect, tool, ink);
-    let key = row
-        .shortcuts
-        .first()
-        .map(|key| ui.ctx().format_shortcut(key));
-    let tip = format!("{} ({})\n{}", row.label, key.unwrap_or_default(), row.tip);
+    sign(ui.painter(), rect, ink);
     response.on_hover_text(tip).clicked()
 }
 
 fn mirror_ui(ui: &mut egui::Ui, draft: &mut DraftPane) {
     ui.label(RichText::new("Mirror").small());
     ui.horizontal(|ui| {
-        for (axis, (sign, command)) in [
-            ("↔", Command::SymmetryAcross),
-            ("↕", Command::SymmetryAlong),
-        ]
-        .into_iter()
-        .enumerate()
+        for (axis, command) in [Command::SymmetryAcross, Command::SymmetryAlong]
+            .into_iter()
+            .enumerate()
         {
             let Some(row) = row_of(command) else { continue };
-            let button = Button::selectable(draft.symmetry[axis], sign).min_size(vec2(SIDE, SIDE));
-            let response = ui.add(button);
-            let on = draft.symmetry[axis];
-            response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::Button, true, on, row.label)
-            });
-            if response.on_hover_text(row.tip).clicked() {
+            let sign = |painter: &egui::Painter, rect, ink| icons::mirror(painter, rect, axis, ink);
+            let label = format!("{}\n{}", row.label, row.tip);
+            if sign_button(ui, row.label, &label, draft.symmetry[axis], sign) {
                 draft.symmetry[axis] = !draft.symmetry[axis];
             }
         }
@@ -152,11 +154,7 @@ fn regions_ui(
         return;
     };
     let colours: Vec<(String, Color32)> = (regions.palette().iter().enumerate())
-        .map(|(index, region)| {
-            let grey = 40 + (index as u32 * 61 % 180) as u8;
-            let colour = region.colour.map_or(Color32::from_gray(grey), colour);
-            (region.name.clone(), colour)
-        })
+        .map(|(index, region)| (region.name.clone(), colour(region_colour(index, region))))
         .collect();
     let chosen = draft.regions.map(usize::from);
     let wish = |index: usize, button| Action::PaintRegion(index as u16, button);

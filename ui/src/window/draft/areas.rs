@@ -25,6 +25,8 @@ pub struct Loom {
     pub lift_plan: bool,
     /// Points of a shaft or treadle.
     pub cell: f32,
+    /// The first shaft and column that are shown, where not all of them fit.
+    pub first: [i64; 2],
 }
 
 /// The parts of the pane; empty ones have no room.
@@ -44,16 +46,18 @@ pub struct Areas {
 }
 
 impl Areas {
-    /// Divides a pane. `cell` = physical pixels a crossing, `density` = pixels a point.
+    /// Divides a pane. `cell` = physical pixels a crossing, `density` = pixels a point,
+    /// `first` = the shaft and the column to begin with where not all of them fit.
     pub fn split(
         pane: Rect,
         design: &Design,
         arrangement: DraftLayout,
         cell: f64,
         density: f32,
+        first: [i64; 2],
     ) -> Self {
         let above = arrangement != DraftLayout::Scandinavian;
-        let loom = match (design.structure(), arrangement) {
+        let mut loom = match (design.structure(), arrangement) {
             (_, DraftLayout::Jacquard) => None,
             (Structure::Draft(draft), _) => {
                 let lift_plan = matches!(draft.lifting(), Lifting::LiftPlan(_));
@@ -67,6 +71,7 @@ impl Areas {
                     columns,
                     lift_plan,
                     cell: (cell.clamp(SHAFT[0], SHAFT[1]) / f64::from(density)) as f32,
+                    first: [0; 2],
                 })
             }
             _ => None,
@@ -80,6 +85,15 @@ impl Areas {
         };
         let across = band(loom.map_or(0, |loom| loom.columns), pane.width());
         let along = band(loom.map_or(0, |loom| loom.shafts), pane.height());
+        if let Some(loom) = &mut loom {
+            for (axis, (band, count)) in [(along, loom.shafts), (across, loom.columns)]
+                .into_iter()
+                .enumerate()
+            {
+                let fits = (band / loom.cell).round() as i64;
+                loom.first[axis] = first[axis].min(i64::from(count) - fits).max(0);
+            }
+        }
         let pad = |band: f32| if band > 0.0 { band + gap } else { 0.0 };
 
         let left = pane.left() + RULER[0];
@@ -142,29 +156,34 @@ impl Areas {
         } else {
             y - self.threading.top()
         };
-        (distance / loom.cell).floor() as i64
+        (distance / loom.cell).floor() as i64 + loom.first[0]
     }
 
     /// The column of the treadling at a place on the screen.
     pub fn treadle_at(&self, x: f32) -> i64 {
         let Some(loom) = self.loom else { return 0 };
-        ((x - self.treadling.left()) / loom.cell).floor() as i64
+        ((x - self.treadling.left()) / loom.cell).floor() as i64 + loom.first[1]
     }
 
     /// Top of a shaft's row and left of a treadle's column.
     pub fn shaft_top(&self, shaft: i64) -> f32 {
-        let cell = self.loom.map_or(0.0, |loom| loom.cell);
+        let (cell, first) = self
+            .loom
+            .map_or((0.0, 0), |loom| (loom.cell, loom.first[0]));
+        let row = (shaft - first) as f32;
         if self.above {
-            self.threading.bottom() - (shaft + 1) as f32 * cell
+            self.threading.bottom() - (row + 1.0) * cell
         } else {
-            self.threading.top() + shaft as f32 * cell
+            self.threading.top() + row * cell
         }
     }
 
     /// Left of a treadle's column.
     pub fn treadle_left(&self, treadle: i64) -> f32 {
-        let cell = self.loom.map_or(0.0, |loom| loom.cell);
-        self.treadling.left() + treadle as f32 * cell
+        let (cell, first) = self
+            .loom
+            .map_or((0.0, 0), |loom| (loom.cell, loom.first[1]));
+        self.treadling.left() + (treadle - first) as f32 * cell
     }
 }
 
@@ -183,7 +202,7 @@ mod tests {
             (DraftLayout::Us, vec2(300.0, 200.0)),
         ] {
             let pane = Rect::from_min_size(pos2(40.0, 30.0), size);
-            let areas = Areas::split(pane, &opened.design, arrangement, 16.0, 1.0);
+            let areas = Areas::split(pane, &opened.design, arrangement, 16.0, 1.0, [0; 2]);
             let parts = [
                 areas.drawdown,
                 areas.threading,
@@ -213,10 +232,32 @@ mod tests {
     }
 
     #[test]
+    fn shafts_that_do_not_fit_are_reached_by_moving_on() {
+        let opened = blank().expect("a design");
+        // 80 points leave room for two of the four shafts of 16.
+        let pane = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 80.0));
+        let split = |first| {
+            let layout = DraftLayout::Us;
+            Areas::split(pane, &opened.design, layout, 16.0, 1.0, [first, 0])
+        };
+        let (start, end) = (split(0), split(99));
+        assert_eq!(start.shaft_at(start.threading.bottom() - 1.0), 0);
+        assert_eq!(end.shaft_at(end.threading.top() + 1.0), 3);
+        assert!(end.shaft_top(3) >= end.threading.top() - 0.1);
+    }
+
+    #[test]
     fn the_drawdown_alone_has_neither_threading_nor_treadling() {
         let opened = blank().expect("a design");
         let pane = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 500.0));
-        let areas = Areas::split(pane, &opened.design, DraftLayout::Jacquard, 16.0, 1.0);
+        let areas = Areas::split(
+            pane,
+            &opened.design,
+            DraftLayout::Jacquard,
+            16.0,
+            1.0,
+            [0; 2],
+        );
         assert!(areas.loom.is_none() && areas.threading.height() < 0.1);
         assert!(areas.warp_bar.height() > 10.0);
     }

@@ -4,7 +4,7 @@
 //! The endless cloth's end 0 is at x = 0 and its pick 0 at y = 0, y upwards; the screen's
 //! y runs down.
 
-use egui::{Pos2, Rect, pos2, vec2};
+use egui::{Pos2, Rect, pos2};
 
 /// Physical pixels a crossing, from the furthest look to the closest. Below one pixel the
 /// steps halve, so that a pixel is a whole square of crossings.
@@ -164,7 +164,7 @@ impl CellGrid {
     }
 
     /// Pixels from the pane's middle, y upwards: what [`Look::zoom`] takes.
-    pub fn from_middle(&self, at: Pos2) -> [f64; 2] {
+    pub fn off_middle(&self, at: Pos2) -> [f64; 2] {
         let offset = at - self.pane.center();
         [
             f64::from(offset.x) * self.density,
@@ -175,14 +175,6 @@ impl CellGrid {
     /// One physical pixel, points.
     pub fn pixel(&self) -> f32 {
         (1.0 / self.density) as f32
-    }
-
-    /// A rectangle moved and stretched to whole physical pixels.
-    pub fn snapped(&self, rect: Rect) -> Rect {
-        let snap = |at: f32| ((f64::from(at) * self.density).round() / self.density) as f32;
-        let min = pos2(snap(rect.min.x), snap(rect.min.y));
-        let size = vec2(snap(rect.width()), snap(rect.height()));
-        Rect::from_min_size(min, size)
     }
 }
 
@@ -235,7 +227,7 @@ mod tests {
         for steps in [3, 4, -2, 5] {
             let grid = CellGrid::new(pane(), &look, 1.0);
             let before = grid.crossing(at);
-            look.zoom(steps, grid.from_middle(at));
+            look.zoom(steps, grid.off_middle(at));
             let after = CellGrid::new(pane(), &look, 1.0).crossing(at);
             // The origin is rounded to a pixel, which may move it by one crossing.
             assert!((before.0 - after.0).abs() <= 1 && (before.1 - after.1).abs() <= 1);

@@ -1,38 +1,41 @@
 //! The draft pane: threading, tie-up, treadling, colour bars and the drawdown, all to be
 //! painted in.
 //!
-//! [`areas`] divides the pane, [`grid`] says where crossings lie, [`tiles`] and [`draw`]
-//! show them, [`zone`] turns pointer and keys into touches, [`strokes`] and [`bands`] turn
-//! touches into edits, which go out as actions.
+//! [`areas`] divides the pane and [`grid`] says where crossings lie. [`picture`] draws all,
+//! from [`tiles`], [`draw`] and [`bands_picture`]. [`zone`] turns pointer and keys into touches,
+//! which [`input`] hands to [`strokes`] and [`bands`]: they turn them into edits, which go
+//! out as actions.
 
 mod areas;
 mod bands;
+mod bands_picture;
 mod draw;
 mod grid;
+mod input;
 mod navigator;
-mod shape;
+mod picture;
 mod strokes;
 mod tiles;
 mod zone;
 
-use egui::{Key, PointerButton, Rect, Shape};
-use pickglass::design::{Colouring, Structure, WeavePattern, YarnId};
-use pickglass::edit::{Change, Document, Rect as Crossings};
+use egui::Key;
+use pickglass::design::{Structure, YarnId};
+use pickglass::edit::{Change, Clip, Document, Rect as Crossings};
 
 use super::action::{Action, Button, Mark};
 use super::settings::Settings;
 use crate::command_table::{Command, DraftLayout, Tool};
-use crate::tokens::{self, Palette};
+use crate::tokens;
 use areas::Areas;
 use bands::Band;
+pub use bands::draft as draft_of;
+pub use draw::end_number;
 use grid::{CellGrid, Look};
-pub use strokes::{Clip, tool_name};
-use zone::{Cell, Touch, Zone};
+pub use strokes::tool_name;
+use zone::{Cell, Zone};
 
 /// Holding a tool's key for longer than this makes it a tool for the moment, s.
 const HELD: f64 = 0.3;
-/// Points of a wheel's turn that make one step of zoom.
-const WHEEL_STEP: f32 = 40.0;
 /// Floats over more threads than this are long, where nobody says otherwise.
 const USUAL_LIMIT: u32 = 7;
 
@@ -90,7 +93,14 @@ pub struct DraftPane {
     navigator: navigator::Navigator,
     hover: Option<(i64, i64)>,
     wheel: f32,
+    /// The shaft and the column that bands begin with, where not all of them fit.
+    first_shaft: [i64; 2],
     in_use: bool,
+    /// What the field under the pointer is for.
+    told: Option<&'static str>,
+    /// How the pane was divided when it was shown last.
+    #[cfg(test)]
+    laid: Option<(Areas, CellGrid)>,
 }
 
 impl DraftPane {
@@ -124,7 +134,11 @@ impl DraftPane {
             navigator: navigator::Navigator::default(),
             hover: None,
             wheel: 0.0,
+            first_shaft: [0; 2],
             in_use: false,
+            told: None,
+            #[cfg(test)]
+            laid: None,
         }
     }
 
@@ -172,9 +186,9 @@ impl DraftPane {
         self.tool
     }
 
-    /// What the status line says of the tool.
+    /// What the status line says: what the field under the pointer is for, or the tool.
     pub fn tool_words(&self) -> &'static str {
-        tool_name(self.tool)
+        self.told.unwrap_or(tool_name(self.tool))
     }
 
     /// Takes a tool; while its key stays down, for the moment only.
@@ -229,19 +243,9 @@ impl DraftPane {
         self.clip.as_ref()
     }
 
-    /// Whether anything was copied.
-    pub fn has_clip(&self) -> bool {
-        self.clip.is_some()
-    }
-
     /// Takes this as copied.
     pub fn copy(&mut self, clip: Clip) {
         self.clip = Some(clip);
-    }
-
-    /// The weave that was copied.
-    pub fn copied_weave(&self) -> Option<&WeavePattern> {
-        self.clip.as_ref().map(|clip| &clip.weave)
     }
 
     /// What painting changes in this design: regions are there to be painted in artwork.
@@ -298,14 +302,18 @@ impl DraftPane {
         let design = document.design();
         let arrangement = self.show.arrangement;
         let look = *self.look.get_or_insert_with(|| {
-            let room = Areas::split(pane, design, arrangement, 16.0, density)
-                .drawdown
-                .size();
+            let areas = Areas::split(pane, design, arrangement, 16.0, density, [0; 2]);
+            let room = areas.drawdown.size();
             let room = [room.x, room.y].map(|side| f64::from(side * density));
             Look::fitting(design.ends(), design.picks(), room)
         });
-        let areas = Areas::split(pane, design, arrangement, look.cell(), density);
+        let first = self.first_shaft;
+        let areas = Areas::split(pane, design, arrangement, look.cell(), density, first);
         let grid = CellGrid::new(areas.drawdown, &look, density);
+        #[cfg(test)]
+        {
+            self.laid = Some((areas, grid));
+        }
         self.let_go(ui);
         self.drawdown_touches(ui, document, &areas, &grid, actions);
         self.band_touches(ui, document, &areas, &grid, actions);
@@ -318,373 +326,37 @@ impl DraftPane {
         }
     }
 
-    fn drawdown_touches(
-        &mut self,
-        ui: &mut egui::Ui,
-        document: &Document,
-        areas: &Areas,
-        grid: &CellGrid,
-        actions: &mut Vec<Action>,
-    ) {
-        let name = format!("Drawdown of {}", document.design().name);
-        let panning = self.panning(ui, areas);
-        let mut zone = self.drawdown;
-        let to_cell = |at| grid.crossing(at);
-        let blocked = panning || self.band_stroke.is_some();
-        let (response, touches) = zone.touches(
-            ui,
-            areas.drawdown,
-            "drawdown",
-            &name,
-            to_cell,
-            (0, 0),
-            blocked,
-        );
-        let shift = ui.input(|input| input.modifiers.shift);
-        if !touches.is_empty() && zone.in_stroke() {
-            ui.ctx().request_repaint();
-        }
-        let moved = zone.cursor != self.drawdown.cursor && response.has_focus();
-        self.drawdown = zone;
-        for touch in touches {
-            self.stroke(document, touch, shift, actions);
-        }
-        if moved && let Some(cursor) = self.drawdown.cursor {
-            self.keep_in_sight(grid, cursor);
-            actions.push(Action::Hover(Some(cursor)));
-        }
-        if response.contains_pointer()
-            && let Some(at) = ui.input(|input| input.pointer.hover_pos())
-        {
-            actions.push(Action::Hover(Some(grid.crossing(at))));
-            ui.ctx().set_cursor_icon(if panning {
-                egui::CursorIcon::Grab
-            } else {
-                egui::CursorIcon::Crosshair
-            });
-        }
-        self.in_use = response.hovered() || response.has_focus();
-        if response.has_focus()
-            && ui.input(|input| input.key_pressed(Key::Escape))
-            && self.stroke.is_none()
-        {
-            self.selection = None;
-        }
-        self.move_view(ui, document, areas, grid, panning);
-        self.menu_of_canvas(ui, &response, actions);
-    }
-
-    /// Whether the pointer moves the cloth: the middle button, or Space, over the canvas.
-    fn panning(&mut self, ui: &egui::Ui, areas: &Areas) -> bool {
-        let typing = ui.ctx().text_edit_focused();
-        let (space, middle, at, moving) = ui.input(|input| {
-            (
-                input.key_down(Key::Space),
-                input.pointer.button_down(PointerButton::Middle),
-                input.pointer.hover_pos(),
-                input.pointer.any_down(),
-            )
-        });
-        let over = at.is_some_and(|at| areas.drawdown.contains(at));
-        let space = space && !typing && over;
-        if space && moving {
-            self.drawdown.space_used();
-        }
-        (space || middle) && (over || moving) && self.stroke.is_none()
-    }
-
-    fn move_view(
-        &mut self,
-        ui: &egui::Ui,
-        document: &Document,
-        areas: &Areas,
-        grid: &CellGrid,
-        panning: bool,
-    ) {
-        let design = document.design();
-        let Some(look) = &mut self.look else { return };
-        let (at, delta, down, wheel, pinch, keys) = ui.input(|input| {
-            (
-                input.pointer.hover_pos(),
-                input.pointer.delta(),
-                input.pointer.any_down(),
-                input.smooth_scroll_delta(),
-                input.zoom_delta(),
-                input.modifiers,
-            )
-        });
-        let mut pan = [0.0; 2];
-        if panning && down {
-            pan = [delta.x, -delta.y].map(|by| f64::from(by) * grid.density);
-        }
-        let over = at.filter(|at| areas.drawdown.contains(*at));
-        if let Some(at) = over.filter(|_| ui.rect_contains_pointer(areas.drawdown)) {
-            if keys.shift {
-                pan[0] += f64::from(wheel.x + wheel.y) * grid.density;
-            } else {
-                self.wheel += wheel.y + (pinch - 1.0) * 200.0;
-                let steps = (self.wheel / WHEEL_STEP).trunc();
-                self.wheel -= steps * WHEEL_STEP;
-                if steps != 0.0 {
-                    look.zoom(steps as i32, grid.from_middle(at));
-                }
-            }
-        }
-        if pan != [0.0; 2] {
-            look.pan(pan, design.ends(), design.picks());
-        }
-    }
-
-    /// Moves the view so that the keyboard's cursor stays in it.
-    fn keep_in_sight(&mut self, grid: &CellGrid, (end, pick): Cell) {
-        let [ends, picks] = grid.visible();
-        let Some(look) = &mut self.look else { return };
-        let into = |at: i64, seen: &std::ops::RangeInclusive<i64>| {
-            let (low, high) = (at - (seen.start() + 1), at - (seen.end() - 1));
-            if low < 0 { low } else { high.max(0) }
-        };
-        look.centre[0] += into(end, &ends) as f64;
-        look.centre[1] += into(pick, &picks) as f64;
-    }
-
-    /// The right button paints, so the menu is on Shift+F10.
-    fn menu_of_canvas(&self, ui: &egui::Ui, response: &egui::Response, actions: &mut Vec<Action>) {
-        let wanted = response.has_focus()
-            && ui.input(|input| input.modifiers.shift && input.key_pressed(Key::F10));
-        let popup = egui::Popup::from_response(response)
-            .id(response.id.with("menu"))
-            .open_memory(wanted.then_some(egui::SetOpenCommand::Toggle))
-            .close_behavior(egui::PopupCloseBehavior::CloseOnClick);
-        popup.show(|ui| {
-            for command in CANVAS_MENU {
-                let Some(row) = crate::command_table::row_of(command) else {
-                    continue;
-                };
-                if ui.button(row.label).on_hover_text(row.tip).clicked() {
-                    actions.push(Action::Command(command));
-                }
-            }
-        });
-    }
-
-    fn band_touches(
-        &mut self,
-        ui: &mut egui::Ui,
-        document: &Document,
-        areas: &Areas,
-        grid: &CellGrid,
-        actions: &mut Vec<Action>,
-    ) {
-        let lift_plan = areas.loom.is_some_and(|loom| loom.lift_plan);
-        for (index, band) in Band::ALL.into_iter().enumerate() {
-            let rect = band.rect(areas);
-            let blank = band == Band::TieUp && lift_plan;
-            if !rect.is_positive() || blank {
-                continue;
-            }
-            let name = band.name(lift_plan);
-            let mut zone = self.bands[index];
-            let to_cell = |at| band.cell(areas, grid, at);
-            let blocked = self.stroke.is_some();
-            let (response, touches) =
-                zone.touches(ui, rect, band.name(false), name, to_cell, (0, 0), blocked);
-            self.bands[index] = zone;
-            for touch in touches {
-                self.band_stroke(ui, document, band, touch, actions);
-            }
-            self.in_use |= response.hovered() || response.has_focus();
-            let at = ui.input(|input| input.pointer.hover_pos());
-            if let Some(at) = at.filter(|_| response.contains_pointer()) {
-                self.hover = Some(grid.crossing(at));
-            }
-            response.on_hover_text_at_pointer(band.tip());
-        }
-    }
-
-    fn band_stroke(
-        &mut self,
-        ui: &egui::Ui,
-        document: &Document,
-        band: Band,
-        touch: Touch,
-        actions: &mut Vec<Action>,
-    ) {
-        let design = document.design();
-        let lift_plan = bands::draft(design).is_some_and(|draft| {
-            matches!(draft.lifting(), pickglass::design::Lifting::LiftPlan(_))
-        });
-        let more = ui.input(|input| input.modifiers.command);
-        let edit = |cells: &[Cell], set: bool, button: Button| match band {
-            Band::WarpBar | Band::WeftBar => {
-                let yarn = self.yarns[usize::from(button == Button::Second)];
-                bands::bar_edit(design, band, cells, yarn)
-            }
-            _ => bands::edit(design, band, cells, set, more),
-        };
-        match touch {
-            Touch::Press(cell, button) | Touch::Key(cell, button) => {
-                let bar = matches!(band, Band::WarpBar | Band::WeftBar);
-                if bar && self.tool == Tool::Picker {
-                    let yarn = bands::yarn_of(design, band, cell);
-                    actions.push(Action::PaintYarn(yarn, button));
-                    return;
-                }
-                let key = matches!(touch, Touch::Key(..));
-                // A key exchanges, so that one key is enough.
-                let set = if key {
-                    !bands::is_set(design, band, cell)
-                } else {
-                    bands::sets(design, band, cell, button)
-                };
-                actions.push(Action::Begin(band.name(lift_plan).to_owned()));
-                actions.extend(edit(&[cell], set, button).map(Action::edit));
-                if key {
-                    actions.push(Action::Finish);
-                } else {
-                    self.band_stroke = Some((band, set, button, cell));
-                }
-            }
-            Touch::Drag(cell) => {
-                if let Some((band, set, button, from)) = self.band_stroke {
-                    let mut path: Vec<Cell> = shape::line(from, cell).collect();
-                    if band == Band::WarpBar {
-                        path.iter_mut().for_each(|cell| cell.1 = 0);
-                    }
-                    actions.extend(edit(&path, set, button).map(Action::edit));
-                    self.band_stroke = Some((band, set, button, cell));
-                }
-            }
-            Touch::Release => {
-                if self.band_stroke.take().is_some() {
-                    actions.push(Action::Finish);
-                }
-            }
-            Touch::Cancel => {
-                self.band_stroke = None;
-                actions.push(Action::Cancel);
-            }
-        }
-    }
-
-    fn colouring(&self) -> Colouring {
-        if self.show.structure_alone {
-            Colouring::Structure
-        } else {
-            Colouring::Yarns
-        }
-    }
-
-    fn draw(
-        &mut self,
-        ui: &egui::Ui,
-        document: &Document,
-        areas: &Areas,
-        grid: &CellGrid,
-        look: &Look,
-    ) {
-        let palette = Palette::current(ui);
-        let (design, drawdown) = (document.design(), document.drawdown());
-        let painter = ui.painter_at(areas.drawdown);
-        painter.rect_filled(areas.drawdown, 0.0, palette.deep);
-        let colouring = self.colouring();
-        self.tiles.show(&painter, grid, look, document, colouring);
-        if colouring == Colouring::Yarns
-            && let Some(mesh) = draw::thread_edges(grid, design, drawdown)
-        {
-            painter.add(Shape::mesh(mesh));
-        }
-        if self.show.grid_lines {
-            draw::grid_lines(&painter, grid);
-        }
-        if self.show.long_floats {
-            draw::long_floats(&painter, grid, design, drawdown, self.limits, &palette);
-        }
-        draw::mark(&painter, grid, document, self.mark);
-        draw::ghosts(&painter, grid, design, self.show.ghosts, &palette);
-        if let Some(selection) = self.selection {
-            draw::selection(&painter, grid, selection);
-        }
-        self.draw_stamp(&painter, grid);
-        let whole = ui.painter();
-        bands::show(whole, grid, areas, design, &palette);
-        draw::rulers(
-            whole,
-            grid,
-            areas,
-            design,
-            self.show.arrangement,
-            self.hover,
-            &palette,
-        );
-        if let Some(hover) = self.hover {
-            draw::crosshair(whole, grid, areas, hover);
-        }
-        self.draw_focus(ui, areas, grid);
-    }
-
-    /// Where a click would put what was copied.
-    fn draw_stamp(&self, painter: &egui::Painter, grid: &CellGrid) {
-        if let (Tool::Stamp, Some(clip), Some((end, pick))) = (self.tool, &self.clip, self.hover) {
-            let (ends, picks) = (clip.weave.ends(), clip.weave.picks());
-            let rect = grid.rect(end, pick, i64::from(ends), i64::from(picks));
-            draw::outline(painter, rect);
-        }
-    }
-
-    /// The field with the keyboard, and its cursor.
-    fn draw_focus(&self, ui: &egui::Ui, areas: &Areas, grid: &CellGrid) {
-        let Some(focused) = ui.memory(|memory| memory.focused()) else {
-            return;
-        };
-        let frame = |rect: Rect, cursor: Option<Rect>| {
-            let stroke = egui::Stroke::new(2.0, tokens::ACCENT);
-            let painter = ui.painter_at(rect.expand(3.0));
-            painter.rect_stroke(rect.expand(1.0), 0.0, stroke, egui::StrokeKind::Middle);
-            if let Some(cursor) = cursor {
-                draw::outline(&ui.painter_at(rect), cursor);
-            }
-        };
-        if Some(focused) == self.drawdown.id() {
-            let cursor = self
-                .drawdown
-                .cursor
-                .map(|(end, pick)| grid.rect(end, pick, 1, 1));
-            frame(areas.drawdown, cursor);
-        }
-        for (band, zone) in Band::ALL.into_iter().zip(&self.bands) {
-            if Some(focused) == zone.id() {
-                let cursor = zone.cursor.map(|cell| band.place(areas, grid, cell));
-                frame(band.rect(areas), cursor);
-            }
-        }
-    }
-
     /// Gives the keyboard to the drawdown.
     pub fn focus(&self, ctx: &egui::Context) {
         if let Some(id) = self.drawdown.id() {
             ctx.memory_mut(|memory| memory.request_focus(id));
         }
     }
+}
 
-    /// Where a crossing lies on the screen, for tests.
-    #[cfg(test)]
-    pub fn place_of(
-        &self,
-        pane: Rect,
-        document: &Document,
-        cell: Cell,
-        density: f32,
-    ) -> egui::Pos2 {
-        let look = self.look.unwrap_or(Look::fitting(1, 1, [1.0; 2]));
-        let areas = Areas::split(
-            pane,
-            document.design(),
-            self.show.arrangement,
-            look.cell(),
-            density,
-        );
-        let grid = CellGrid::new(areas.drawdown, &look, density);
-        grid.rect(cell.0, cell.1, 1, 1).center()
+#[cfg(test)]
+impl DraftPane {
+    /// The middle of a crossing on the screen.
+    pub fn place_of(&self, (end, pick): Cell) -> egui::Pos2 {
+        let (_, grid) = self.laid.expect("shown once");
+        grid.rect(end, pick, 1, 1).center()
+    }
+
+    /// Physical pixels a crossing.
+    pub fn cell(&self) -> f64 {
+        self.laid.expect("shown once").1.cell
+    }
+
+    /// The middle of a cell of the threading.
+    pub fn threading_place(&self, cell: Cell) -> egui::Pos2 {
+        let (areas, grid) = self.laid.expect("shown once");
+        Band::Threading.place(&areas, &grid, cell).center()
+    }
+
+    /// The middle of an end in the colour bar.
+    pub fn bar_place(&self, end: i64) -> egui::Pos2 {
+        let (areas, grid) = self.laid.expect("shown once");
+        Band::WarpBar.place(&areas, &grid, (end, 0)).center()
     }
 }
 
@@ -692,16 +364,3 @@ impl DraftPane {
 pub fn is_shaft_draft(document: &Document) -> bool {
     matches!(document.design().structure(), Structure::Draft(_))
 }
-
-/// What the menu of the canvas offers.
-const CANVAS_MENU: [Command; 9] = [
-    Command::Undo,
-    Command::Redo,
-    Command::Cut,
-    Command::Copy,
-    Command::Paste,
-    Command::SelectAll,
-    Command::Clear,
-    Command::Invert,
-    Command::Fit,
-];

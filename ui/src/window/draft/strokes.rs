@@ -1,11 +1,12 @@
 //! The tools on the drawdown: what a press, a drag and a release of each ask for.
 
-use pickglass::design::{Grid, Structure, WeavePattern};
-use pickglass::edit::{Cells, Document, Edit, Rect};
+use pickglass::design::Structure;
+use pickglass::edit::fill::{Alike, everywhere, flood};
+use pickglass::edit::shapes::{line, rectangle};
+use pickglass::edit::{Cells, Document, Edit, Rect, Span, Surface, Symmetry};
 
 use super::super::action::{Action, Button};
 use super::super::toasts::Grade;
-use super::shape;
 use super::zone::{Cell, Touch};
 use super::{DraftPane, Layer};
 use crate::command_table::Tool;
@@ -17,85 +18,8 @@ pub struct Stroke {
     button: Button,
     from: Cell,
     reached: Cell,
-    /// What is moved: its place before, and what lay there.
-    moved: Option<(Rect, Clip)>,
-}
-
-/// Copied crossings.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Clip {
-    pub weave: WeavePattern,
-    /// Their regions, where they are copied from artwork.
-    pub regions: Option<Grid<u16>>,
-}
-
-impl Clip {
-    /// What lies in a box of the design.
-    pub fn of(document: &Document, rect: Rect, layer: Layer) -> Option<Self> {
-        let (design, drawdown) = (document.design(), document.drawdown());
-        let inside =
-            rect.end + rect.ends <= design.ends() && rect.pick + rect.picks <= design.picks();
-        if !inside {
-            return None;
-        }
-        let weave = WeavePattern::from_fn(rect.ends, rect.picks, |end, pick| {
-            drawdown.get(rect.end + end, rect.pick + pick)
-        });
-        let regions = match design.structure() {
-            Structure::Regions(regions) if layer == Layer::Regions => {
-                let map = regions.map();
-                Grid::from_fn(rect.ends, rect.picks, |end, pick| {
-                    map.get(rect.end + end, rect.pick + pick)
-                })
-                .ok()
-            }
-            _ => None,
-        };
-        Some(Self { weave, regions })
-    }
-
-    /// The weave as text, for other programs: `#` = warp up, the last line is pick 0. What
-    /// is too large for a text is named instead.
-    pub fn text(&self) -> String {
-        const MOST: u64 = 1 << 18;
-        let (ends, picks) = (self.weave.ends(), self.weave.picks());
-        if u64::from(ends) * u64::from(picks) > MOST {
-            return format!("{ends} × {picks} crossings");
-        }
-        self.weave.to_string()
-    }
-
-    /// The edit that puts it with its lower left crossing at a place of the cloth.
-    pub fn put(&self, document: &Document, (end, pick): Cell) -> Option<Edit> {
-        let design = document.design();
-        let (ends, picks) = (design.ends(), design.picks());
-        let mut cells = Cells::none(ends, picks);
-        let mut values = WeavePattern::new(ends, picks);
-        let mut regions = match (&self.regions, design.structure()) {
-            (Some(_), Structure::Regions(regions)) => Some(regions.map().clone()),
-            _ => None,
-        };
-        for up in 0..self.weave.picks() {
-            for right in 0..self.weave.ends() {
-                let at = (end + i64::from(right), pick + i64::from(up));
-                let Some((e, p)) = design.lattice().wrap(at.0, at.1, ends, picks) else {
-                    continue;
-                };
-                cells.insert(e, p);
-                match (&mut regions, &self.regions) {
-                    (Some(map), Some(own)) => map.set(e, p, own.get(right, up)),
-                    _ => values.set(e, p, self.weave.get(right, up)),
-                }
-            }
-        }
-        Some(match regions {
-            Some(regions) => Edit::PlaceRegions {
-                cells,
-                regions: Box::new(regions),
-            },
-            None => Edit::Place { cells, values },
-        })
-    }
+    /// What is moved, at its place before.
+    moved: Option<Rect>,
 }
 
 impl DraftPane {
@@ -126,7 +50,9 @@ impl DraftPane {
     /// Keys paint like the tool would; the pencil exchanges warp and weft.
     fn key(&mut self, document: &Document, cell: Cell, button: Button, actions: &mut Vec<Action>) {
         let flip = self.tool() == Tool::Pencil && self.layer(document) == Layer::Weave;
-        if flip && let Some(cells) = shape::cells(document, [cell], self.symmetry) {
+        if flip {
+            let surface = self.surface(document);
+            let cells = surface.cells(line(&surface, cell, cell));
             actions.push(Action::edit(Edit::Flip(cells)));
             return;
         }
@@ -155,36 +81,48 @@ impl DraftPane {
         match tool {
             Tool::Pencil | Tool::Line | Tool::Rectangle => {
                 actions.push(Action::Begin(tool_name(tool).to_owned()));
-                self.paint(document, [cell], button, actions);
+                let surface = self.surface(document);
+                self.paint(document, line(&surface, cell, cell), button, actions);
             }
             Tool::Fill | Tool::Replace => {
-                let found = match tool {
-                    Tool::Fill => shape::fill(document, cell, self.layer(document)),
-                    _ => shape::alike(document, cell, self.layer(document)),
+                let Some(start) = self.surface(document).wrap(cell) else {
+                    return;
                 };
-                if let Some(cells) = found {
-                    actions.push(Action::Begin(tool_name(tool).to_owned()));
-                    self.paint_cells(document, cells, button, actions);
-                    actions.push(Action::Finish);
-                }
+                let alike = match self.layer(document) {
+                    Layer::Weave => Alike::Drawdown,
+                    Layer::Regions => Alike::Region,
+                };
+                let limits = self.selected_cells(document);
+                let find = if tool == Tool::Fill {
+                    flood
+                } else {
+                    everywhere
+                };
+                let cells = find(document, start, alike, limits.as_ref());
+                actions.push(Action::Begin(tool_name(tool).to_owned()));
+                self.paint_cells(document, cells, button, actions);
+                actions.push(Action::Finish);
                 return;
             }
             Tool::Picker => {
                 self.pick(document, cell, button, actions);
             }
             Tool::Select => self.select_between(document, cell, cell),
-            Tool::Move => match self.selection().and_then(|rect| {
-                let clip = Clip::of(document, rect, self.layer(document))?;
-                Some((rect, clip))
-            }) {
-                Some(moved) => {
-                    stroke.moved = Some(moved);
+            Tool::Move => match self.selection() {
+                Some(rect) => {
+                    stroke.moved = Some(rect);
                     actions.push(Action::Begin(tool_name(tool).to_owned()));
                 }
                 None => actions.push(nothing("Nothing is selected: select crossings first (S).")),
             },
-            Tool::Stamp => match self.clip().and_then(|clip| clip.put(document, cell)) {
-                Some(edit) => {
+            Tool::Stamp => match self.clip() {
+                Some(clip) => {
+                    let surface = Surface::of(document.design());
+                    let regions = match self.layer(document) {
+                        Layer::Regions => clip.paste_regions(&surface, cell),
+                        Layer::Weave => None,
+                    };
+                    let edit = regions.unwrap_or_else(|| clip.paste(&surface, cell));
                     actions.push(Action::Begin(tool_name(tool).to_owned()));
                     actions.push(Action::edit(edit));
                     actions.push(Action::Finish);
@@ -201,29 +139,28 @@ impl DraftPane {
         let Some(mut stroke) = self.stroke.take() else {
             return;
         };
+        let surface = self.surface(document);
         match stroke.tool {
             Tool::Pencil => {
-                let path = shape::line(stroke.reached, cell);
+                let path = line(&surface, stroke.reached, cell);
                 self.paint(document, path, stroke.button, actions);
             }
             Tool::Line => {
                 actions.push(Action::Restart);
-                let path = shape::line(stroke.from, cell);
+                let path = line(&surface, stroke.from, cell);
                 self.paint(document, path, stroke.button, actions);
             }
             Tool::Rectangle => {
                 actions.push(Action::Restart);
-                let found = shape::rectangle(document, stroke.from, cell, shift, self.symmetry);
-                if let Some(cells) = found {
-                    self.paint_cells(document, cells, stroke.button, actions);
-                }
+                let path = rectangle(&surface, stroke.from, cell, !shift);
+                self.paint(document, path, stroke.button, actions);
             }
             Tool::Select => self.select_between(document, stroke.from, cell),
             Tool::Move => {
-                if let Some((rect, clip)) = &stroke.moved {
+                if let Some(rect) = stroke.moved {
                     actions.push(Action::Restart);
                     let by = (cell.0 - stroke.from.0, cell.1 - stroke.from.1);
-                    self.move_by(document, *rect, clip, by, actions);
+                    self.move_by(document, rect, by, actions);
                 }
             }
             Tool::Picker => self.pick(document, cell, stroke.button, actions),
@@ -241,28 +178,29 @@ impl DraftPane {
         }
     }
 
-    /// Moves what was selected: weft up is left behind, and the selection goes along.
+    /// Moves what was selected, and the selection with it.
     fn move_by(
         &mut self,
         document: &Document,
         rect: Rect,
-        clip: &Clip,
         by: (i64, i64),
         actions: &mut Vec<Action>,
     ) {
         let design = document.design();
         let (ends, picks) = (design.ends(), design.picks());
+        let cells = Cells::of_rect(ends, picks, rect);
+        let behind = match self.layer(document) {
+            Layer::Weave => None,
+            Layer::Regions => Some(self.region(Button::Second)),
+        };
+        // The document still shows the last step of the drag: what is moved is what lay
+        // there when the gesture began, which it is after the restart.
+        actions.push(Action::Move {
+            cells: Box::new(cells),
+            by,
+            behind,
+        });
         let to = (i64::from(rect.end) + by.0, i64::from(rect.pick) + by.1);
-        if clip.regions.is_none() {
-            let cells = Cells::of_rect(ends, picks, rect);
-            actions.push(Action::edit(Edit::Paint {
-                cells,
-                warp_up: false,
-            }));
-        }
-        if let Some(edit) = clip.put(document, to) {
-            actions.push(Action::edit(edit));
-        }
         let last = |size: u32, count: u32| i64::from(size.saturating_sub(count));
         self.select(Some(Rect {
             end: to.0.clamp(0, last(ends, rect.ends)) as u32,
@@ -271,17 +209,34 @@ impl DraftPane {
         }));
     }
 
+    /// The design to paint on, with the symmetries that are on.
+    fn surface(&self, document: &Document) -> Surface {
+        let design = document.design();
+        let middle = |on: bool, count: u32| on.then(|| i64::from(count) - 1);
+        Surface::of(design).with_symmetry(Symmetry {
+            mirror_ends: middle(self.symmetry[0], design.ends()),
+            mirror_picks: middle(self.symmetry[1], design.picks()),
+            ..Symmetry::default()
+        })
+    }
+
+    /// The selection, which keeps paint inside.
+    fn selected_cells(&self, document: &Document) -> Option<Cells> {
+        let design = document.design();
+        let cells = |rect| Cells::of_rect(design.ends(), design.picks(), rect);
+        self.selection().map(cells)
+    }
+
     /// Paints crossings of the endless cloth with what a button stands for.
     fn paint(
         &self,
         document: &Document,
-        cells: impl IntoIterator<Item = Cell>,
+        spans: Vec<Span>,
         button: Button,
         actions: &mut Vec<Action>,
     ) {
-        if let Some(cells) = shape::cells(document, cells, self.symmetry) {
-            self.paint_cells(document, cells, button, actions);
-        }
+        let cells = self.surface(document).cells(spans);
+        self.paint_cells(document, cells, button, actions);
     }
 
     fn paint_cells(
@@ -291,11 +246,8 @@ impl DraftPane {
         button: Button,
         actions: &mut Vec<Action>,
     ) {
-        // A selection keeps the paint inside.
-        if let Some(rect) = self.selection() {
-            let (ends, picks) = cells.size();
-            let outside = Cells::of_rect(ends, picks, rect).inverted();
-            cells.subtract(&outside);
+        if let Some(selected) = self.selected_cells(document) {
+            cells.subtract(&selected.inverted());
         }
         if cells.is_empty() {
             return;

@@ -4,7 +4,7 @@
 //! What is small is made at once, within a budget of time a frame; what is large is made
 //! on a thread while the old tile is still shown.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ const BUDGET: Duration = Duration::from_millis(5);
 const AT_ONCE: u64 = 1 << 18;
 
 /// Which tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     colouring: Colouring,
     level: u32,
@@ -51,9 +51,7 @@ impl Key {
 
 struct Tile {
     texture: TextureHandle,
-    /// The revision it shows.
-    revision: u64,
-    /// Something in it changed since.
+    /// Something in it changed since it was made.
     stale: bool,
     /// The frame that last drew it.
     seen: u64,
@@ -76,7 +74,7 @@ struct Made {
 /// The tiles, and the thread that makes the large ones.
 #[derive(Default)]
 pub struct Tiles {
-    tiles: HashMap<Key, Tile>,
+    tiles: BTreeMap<Key, Tile>,
     frame: u64,
     maker: Option<Maker>,
 }
@@ -163,7 +161,7 @@ impl Tiles {
     ) {
         self.frame += 1;
         let ctx = painter.ctx().clone();
-        self.take_made(&ctx);
+        self.take_made(&ctx, document.revision());
         let begun = Instant::now();
         let mut orders = Vec::new();
         let level = look.level();
@@ -183,7 +181,7 @@ impl Tiles {
                     if crossings <= AT_ONCE && begun.elapsed() < BUDGET {
                         let (design, drawdown) = (document.design(), document.drawdown());
                         let image = image(design, drawdown, key.window(), colouring);
-                        self.put(&ctx, key, document.revision(), image);
+                        self.put(&ctx, key, image);
                     } else if crossings <= AT_ONCE {
                         ctx.request_repaint();
                     } else {
@@ -207,17 +205,16 @@ impl Tiles {
         self.forget_old();
     }
 
-    fn put(&mut self, ctx: &egui::Context, key: Key, revision: u64, image: ColorImage) {
+    fn put(&mut self, ctx: &egui::Context, key: Key, image: ColorImage) {
         match self.tiles.get_mut(&key) {
             Some(tile) => {
                 tile.texture.set(image, TextureOptions::NEAREST);
-                (tile.revision, tile.stale) = (revision, false);
+                tile.stale = false;
             }
             None => {
                 let texture = ctx.load_texture("draft tile", image, TextureOptions::NEAREST);
                 let tile = Tile {
                     texture,
-                    revision,
                     stale: false,
                     seen: self.frame,
                 };
@@ -226,19 +223,19 @@ impl Tiles {
         }
     }
 
-    fn take_made(&mut self, ctx: &egui::Context) {
+    fn take_made(&mut self, ctx: &egui::Context, present: u64) {
         let Some(maker) = &self.maker else { return };
         let made: Vec<Made> = maker.made.try_iter().collect();
-        for made in made {
-            let newer =
-                (self.tiles.get(&made.key)).is_none_or(|tile| tile.revision <= made.revision);
-            if newer {
-                // What changed since it was ordered is ordered again by the next look.
-                let current = maker_is_current(&self.maker, made.revision);
-                self.put(ctx, made.key, made.revision, made.image);
-                if let Some(tile) = self.tiles.get_mut(&made.key) {
-                    tile.stale = !current;
-                }
+        for Made {
+            key,
+            revision,
+            image,
+        } in made
+        {
+            self.put(ctx, key, image);
+            // What changed while it was made is ordered again by the next look.
+            if let Some(tile) = self.tiles.get_mut(&key) {
+                tile.stale = revision != present;
             }
         }
     }
@@ -257,9 +254,6 @@ impl Tiles {
                 }
             },
         };
-        if let Some(order) = orders.first() {
-            maker.newest = order.revision;
-        }
         maker.wanted(orders);
     }
 
@@ -274,10 +268,6 @@ impl Tiles {
         self.tiles
             .retain(|_, tile| tile.seen >= oldest || tile.seen == frame);
     }
-}
-
-fn maker_is_current(maker: &Option<Maker>, revision: u64) -> bool {
-    maker.as_ref().is_some_and(|maker| maker.newest == revision)
 }
 
 fn whole() -> Rect {
@@ -300,8 +290,6 @@ struct Maker {
     orders: Arc<Mutex<Vec<Order>>>,
     bell: Sender<()>,
     made: Receiver<Made>,
-    /// The revision last asked for.
-    newest: u64,
 }
 
 impl Maker {
@@ -333,12 +321,7 @@ impl Maker {
                     }
                 }
             })?;
-        Ok(Self {
-            orders,
-            bell,
-            made,
-            newest: 0,
-        })
+        Ok(Self { orders, bell, made })
     }
 
     /// What is wanted now, in place of what was wanted before.

@@ -23,6 +23,18 @@ pub enum Touch {
     Key(Cell, Button),
 }
 
+/// Where a field lies and what it is called.
+#[derive(Debug, Clone, Copy)]
+pub struct Field<'n> {
+    pub rect: Rect,
+    /// Which field it is, always the same.
+    pub key: &'static str,
+    /// What assistive technology calls it.
+    pub name: &'n str,
+    /// No stroke begins in it now.
+    pub blocked: bool,
+}
+
 /// A field's own state.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Zone {
@@ -32,6 +44,8 @@ pub struct Zone {
     stroke: Option<(PointerButton, Cell)>,
     /// The widget, once it was shown.
     id: Option<egui::Id>,
+    /// The pointer was used last: the keyboard's cursor would only be in the way.
+    by_pointer: bool,
     /// Space was used to move the view: letting it go paints nothing.
     space_used: bool,
 }
@@ -40,6 +54,11 @@ impl Zone {
     /// The widget, once it was shown.
     pub fn id(&self) -> Option<egui::Id> {
         self.id
+    }
+
+    /// The cell that keys act on, while keys are used.
+    pub fn shown_cursor(&self) -> Option<Cell> {
+        self.cursor.filter(|_| !self.by_pointer)
     }
 
     /// Whether a stroke is being made.
@@ -57,18 +76,19 @@ impl Zone {
         self.space_used = true;
     }
 
-    /// Makes `rect` a field called `name`; `to_cell` tells the cell under a point and
-    /// `start` where the keyboard's cursor begins. Strokes do not begin while `blocked`.
+    /// Makes a field of the screen; `to_cell` tells the cell under a point.
     pub fn touches(
         &mut self,
         ui: &egui::Ui,
-        rect: Rect,
-        key: &str,
-        name: &str,
+        field: &Field<'_>,
         to_cell: impl Fn(Pos2) -> Cell,
-        start: Cell,
-        blocked: bool,
     ) -> (Response, Vec<Touch>) {
+        let Field {
+            rect,
+            key,
+            name,
+            blocked,
+        } = *field;
         let id = egui::Id::unique(("field", key));
         self.id = Some(id);
         let response = ui.interact(rect, id, Sense::click_and_drag());
@@ -76,7 +96,7 @@ impl Zone {
         let mut touches = Vec::new();
         self.pointer(ui, &response, &to_cell, blocked, &mut touches);
         if response.has_focus() {
-            self.keys(ui, &response, start, &mut touches);
+            self.keys(ui, &response, &mut touches);
         }
         (response, touches)
     }
@@ -110,6 +130,7 @@ impl Zone {
                         };
                         let cell = to_cell(pos);
                         self.stroke = Some((button, cell));
+                        self.by_pointer = true;
                         self.cursor = Some(cell);
                         touches.push(Touch::Press(cell, side));
                     }
@@ -127,11 +148,9 @@ impl Zone {
                         button,
                         pressed: false,
                         ..
-                    } => {
-                        if self.stroke.is_some_and(|(held, _)| held == button) {
-                            self.stroke = None;
-                            touches.push(Touch::Release);
-                        }
+                    } if self.stroke.is_some_and(|(held, _)| held == button) => {
+                        self.stroke = None;
+                        touches.push(Touch::Release);
                     }
                     _ => {}
                 }
@@ -150,7 +169,7 @@ impl Zone {
         }
     }
 
-    fn keys(&mut self, ui: &egui::Ui, response: &Response, start: Cell, touches: &mut Vec<Touch>) {
+    fn keys(&mut self, ui: &egui::Ui, response: &Response, touches: &mut Vec<Touch>) {
         let filter = egui::EventFilter {
             horizontal_arrows: true,
             vertical_arrows: true,
@@ -158,7 +177,7 @@ impl Zone {
             ..Default::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        let cursor = self.cursor.get_or_insert(start);
+        let cursor = self.cursor.get_or_insert((0, 0));
         ui.input(|input| {
             if input.modifiers.alt || input.modifiers.command {
                 return;
@@ -181,6 +200,7 @@ impl Zone {
                 } else {
                     Button::First
                 };
+                self.by_pointer = false;
                 match (key, pressed) {
                     (Key::ArrowLeft, true) => cursor.0 -= step,
                     (Key::ArrowRight, true) => cursor.0 += step,

@@ -149,7 +149,7 @@ impl Yarns {
         }
         if self.open == Some(index) {
             ui.indent(("yarn", index), |ui| {
-                self.details_ui(ui, design, id, yarn, actions)
+                self.details_ui(ui, design, id, yarn, actions);
             });
         }
     }
@@ -316,31 +316,31 @@ impl Yarns {
             ui.label(RichText::new(text).color(palette.quiet));
             return;
         };
-        let stripes = &mut self.stripes[which];
+        let typed = &mut self.stripes[which];
         let label = ui.label(name);
-        let field = TextEdit::singleline(&mut stripes.text)
+        let field = TextEdit::singleline(&mut typed.text)
             .desired_width(f32::INFINITY)
             .hint_text("12 navy 4 cream 12 navy");
         let field = ui.add(field).labelled_by(label.id);
-        if !field.has_focus() && !field.lost_focus() && stripes.of != Some(document.revision()) {
-            stripes.text = if order.len() <= MOST_WRITTEN {
+        if !field.has_focus() && !field.lost_focus() && typed.of != Some(document.revision()) {
+            typed.text = if order.len() <= MOST_WRITTEN {
                 stripes::write(order, design.yarns())
             } else {
                 String::new()
             };
-            stripes.of = Some(document.revision());
-            stripes.problem = None;
+            typed.of = Some(document.revision());
+            typed.problem = None;
         }
         if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-            match stripes::parse(&stripes.text, design.yarns()) {
+            match stripes::parse(&typed.text, design.yarns()) {
                 Ok(order) => {
-                    stripes.problem = None;
+                    typed.problem = None;
                     actions.push(Action::edit(Edit::SetOrder { direction, order }));
                 }
-                Err(error) => stripes.problem = Some(error.to_string()),
+                Err(error) => typed.problem = Some(error.to_string()),
             }
         }
-        if let Some(problem) = &stripes.problem {
+        if let Some(problem) = &typed.problem {
             ui.horizontal(|ui| {
                 crate::window::icons::show(ui, crate::window::toasts::Grade::Error, palette.error);
                 ui.label(RichText::new(problem).color(palette.error));

@@ -39,7 +39,7 @@ impl Builder {
 /// What a full cloth still needs.
 enum Wanted {
     /// Some exemplars.
-    Exemplars(UnfinishedCloth),
+    Exemplars(Box<UnfinishedCloth>),
     /// Everything.
     All,
 }
@@ -61,7 +61,7 @@ pub(super) fn cloth_of(
                     desk.lock().full = Some((request.clone(), Arc::clone(&cloth)));
                     return Ok((cloth, true));
                 }
-                Some(Followed::Unfinished(cloth)) => Wanted::Exemplars(cloth),
+                Some(Followed::Unfinished(cloth)) => Wanted::Exemplars(Box::new(cloth)),
                 None => Wanted::All,
             }
         }
