@@ -187,7 +187,9 @@ run_tests() {
 
 # The table of asked and shown colours, which the tests alone do not print.
 print_colours() {
-    cargo test --release --package pickglass --test cloth_colour --quiet -- --nocapture
+    # For the workspace, as all else: one package alone has other features of its
+    # dependencies, and everything would be built again.
+    cargo test --release --workspace --test cloth_colour --quiet -- --nocapture
 }
 
 run_docs() {

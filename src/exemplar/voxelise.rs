@@ -1,7 +1,7 @@
 //! Fibres to voxels: fill fraction, principal direction of ttᵀ, yarn.
 //!
 //! A fibre runs mainly along its yarn, so it is met plane by plane: one point for each
-//! voxel plane across the yarn (above level 0, for each plane that level 0 would have),
+//! voxel plane across the yarn (at levels 1 and 2, for each plane that level 0 would have),
 //! splatted as a disc of the fibre's own thickness. Slabs of eight voxel rows are
 //! independent and run in parallel; sums are in fixed order.
 
@@ -102,7 +102,8 @@ fn strands(
     seed: u64,
 ) -> Strands {
     let layout = FibreLayout::new(recipe);
-    let steps = 1 << grid.level;
+    // From level 3 on a cloth is there for its first second: a point a voxel is enough.
+    let steps = if grid.level < 3 { 1 << grid.level } else { 1 };
     let planes = planes * steps;
     let radius = recipe.fibre_um * 0.5e-3;
     let yarns = weave.yarns(direction).len();
