@@ -4,7 +4,7 @@ use egui::pos2;
 use egui_kittest::SnapshotOptions;
 use egui_kittest::wgpu::WgpuTestRenderer;
 
-use super::{build, builder, open};
+use super::{build, builder, open, shows, wait_for};
 use crate::command_table::{Command, DraftLayout};
 use crate::opened::Opened;
 use crate::window::session::blank;
@@ -35,6 +35,10 @@ fn picture_of_nothing_open() {
         return;
     };
     let mut window = build(builder().renderer(renderer), None);
+    // The thumbnails are drawn on a thread.
+    wait_for(&mut window, "the thumbnails", |window| {
+        shows(window, "Oxford")
+    });
     window.run_steps(5);
     window.snapshot_options("nothing_open", &tolerance());
 }
@@ -57,6 +61,10 @@ fn a_changed_picture_fails() {
         return;
     };
     let mut window = build(builder().renderer(renderer), None);
+    // The thumbnails are drawn on a thread.
+    wait_for(&mut window, "the thumbnails", |window| {
+        shows(window, "Oxford")
+    });
     window.run_steps(5);
     window.mask(egui::Rect::from_min_size(
         pos2(480.0, 320.0),
