@@ -77,6 +77,8 @@ pub enum Command {
     SelectAll,
     Deselect,
     Clear,
+    FillSelection,
+    StampWeave,
     Invert,
     MirrorAcross,
     MirrorAlong,
@@ -229,6 +231,8 @@ pub const TABLE: &[Row] = &[
     row(Command::Copy, Menu::Edit, "Copy", "Copy the selected crossings", &[ctrl(Key::C)]),
     row(Command::Paste, Menu::Edit, "Paste", "Stamp what was copied; click to place it", &[ctrl(Key::V)]),
     row(Command::Clear, Menu::Edit, "Clear", "Weft up in the whole selection", &[plain(Key::Delete)]),
+    apart(row(Command::StampWeave, Menu::Edit, "Stamp a weave…", "Take a weave by its notation, or from the library, as the stamp", &[ctrl(Key::B)])),
+    row(Command::FillSelection, Menu::Edit, "Fill with the stamp", "The selection is filled with what was copied, repeated", &[ctrl(Key::F)]),
     apart(row(Command::SelectAll, Menu::Edit, "Select all", "Select one whole repeat", &[ctrl(Key::A)])),
     row(Command::Deselect, Menu::Edit, "Select nothing", "Forget the selection", &[ctrl_shift(Key::A)]),
 

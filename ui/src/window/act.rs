@@ -11,7 +11,7 @@ use super::toasts::Grade;
 impl App {
     /// Does what the panes asked for, in order.
     pub(super) fn act(&mut self, ctx: &egui::Context, actions: Vec<Action>) {
-        self.hover = None;
+        let before = (self.hover.take(), self.draft.mark);
         self.draft.mark = Mark::Nothing;
         for action in actions {
             match action {
@@ -45,6 +45,10 @@ impl App {
                 Action::Show(pane) => self.layout.bring(pane),
                 Action::Say(grade, text, kept) => self.say(grade, text, kept),
             }
+        }
+        // The other views mark it in the next frame.
+        if before != (self.hover, self.draft.mark) {
+            ctx.request_repaint();
         }
     }
 
@@ -124,6 +128,8 @@ impl App {
             return;
         };
         if !change.is_nothing() {
+            // What was drawn in this frame shows the state before.
+            self.ctx.request_repaint();
             self.draft.changed(&session.document, change);
         }
     }

@@ -59,7 +59,7 @@ pub struct App {
     /// The title the system was last told.
     pub(super) told_title: String,
     frames_left: Option<u32>,
-    ctx: egui::Context,
+    pub(super) ctx: egui::Context,
     /// Seconds spent in each frame.
     #[cfg(test)]
     pub(super) spent: Vec<f64>,

@@ -5,6 +5,7 @@
 use std::path::PathBuf;
 
 use egui::{Id, Modal, RichText};
+use pickglass::design::WeavePattern;
 use pickglass::edit::Edit;
 
 use super::forms::{Filled, Form};
@@ -43,6 +44,8 @@ pub enum Answer {
     Instead { edit: Edit, always: bool },
     /// What a form came to: the entry of the history, and its edits.
     Filled(&'static str, Vec<Edit>),
+    /// A weave to stamp.
+    Stamp(WeavePattern),
 }
 
 /// The question that is asked, and what waits for a save.
@@ -87,6 +90,7 @@ impl Asking {
                     Filled::Open => {}
                     Filled::Closed => close = true,
                     Filled::Done(name, edits) => answer = Some(Answer::Filled(name, edits)),
+                    Filled::Stamp(weave) => answer = Some(Answer::Stamp(weave)),
                 },
             }
         });

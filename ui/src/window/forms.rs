@@ -2,18 +2,34 @@
 //! design has and comes to edits, which are one entry of the history.
 
 use egui::{ComboBox, DragValue, RichText};
-use pickglass::design::{Design, Lattice, Lifting, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed};
+use pickglass::design::{
+    Design, Lattice, Lifting, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed, WeavePattern, library, weave,
+};
 use pickglass::edit::Edit;
 
 use super::draft;
 use crate::tokens::{self, Palette};
 
+/// Names of the library that are offered while a weave is typed.
+const MOST_NAMES: usize = 12;
+
 /// A form with what was entered so far.
 pub enum Form {
-    Size { ends: u32, picks: u32 },
+    Size {
+        ends: u32,
+        picks: u32,
+    },
     Repeat(Lattice),
-    Loom { before: Loom, wanted: Loom },
-    Words { name: String, notes: String },
+    Loom {
+        before: Loom,
+        wanted: Loom,
+    },
+    Words {
+        name: String,
+        notes: String,
+    },
+    /// The notation or the name of a weave to stamp.
+    Stamp(String),
 }
 
 /// What a loom can be told.
@@ -31,6 +47,8 @@ pub enum Filled {
     Closed,
     /// The entry of the history, and its edits.
     Done(&'static str, Vec<Edit>),
+    /// A weave to stamp.
+    Stamp(WeavePattern),
 }
 
 impl Form {
@@ -76,6 +94,7 @@ impl Form {
             Self::Repeat(_) => "Repeat",
             Self::Loom { .. } => "Loom",
             Self::Words { .. } => "Name and notes",
+            Self::Stamp(_) => "Stamp a weave",
         }
     }
 
@@ -92,6 +111,10 @@ impl Form {
                 None
             }
             Self::Words { name, notes } => words_ui(ui, name, notes),
+            Self::Stamp(text) => {
+                stamp_ui(ui, text);
+                by_name(text).err()
+            }
         };
         if let Some(wrong) = &wrong {
             let error = Palette::current(ui).error;
@@ -102,7 +125,10 @@ impl Form {
         ui.horizontal(|ui| {
             let apply = egui::Button::new("Apply");
             if ui.add_enabled(wrong.is_none(), apply).clicked() {
-                filled = Filled::Done(title, self.edits());
+                filled = match self {
+                    Self::Stamp(text) => by_name(text).map_or(Filled::Open, Filled::Stamp),
+                    _ => Filled::Done(title, self.edits()),
+                };
             }
             if ui.button("Cancel").clicked() {
                 filled = Filled::Closed;
@@ -124,6 +150,7 @@ impl Form {
                 Edit::Rename(name.trim().to_owned()),
                 Edit::SetNotes(notes.clone()),
             ],
+            Self::Stamp(_) => Vec::new(),
         }
     }
 }
@@ -254,6 +281,40 @@ fn words_ui(ui: &mut egui::Ui, name: &mut String, notes: &mut String) -> Option<
     empty.then(|| "a design without a name cannot be found again: give it one".to_owned())
 }
 
+/// The weave of a name in the library, or of a notation.
+fn by_name(text: &str) -> Result<WeavePattern, String> {
+    match library::find(text) {
+        Some(known) => Ok(known.pattern().clone()),
+        None => weave(text).map_err(|error| error.to_string()),
+    }
+}
+
+fn stamp_ui(ui: &mut egui::Ui, text: &mut String) {
+    note(
+        ui,
+        "A notation such as 3/1 twill, or a name from the library.",
+    );
+    let label = ui.label("Weave");
+    let field = egui::TextEdit::singleline(text).desired_width(f32::INFINITY);
+    ui.add(field).labelled_by(label.id);
+    let typed = text.trim().to_lowercase();
+    let names = (library::library().iter())
+        .map(library::LibraryWeave::name)
+        .filter(|name| *name != typed && name.to_lowercase().contains(&typed))
+        .take(MOST_NAMES);
+    let mut chosen = None;
+    ui.horizontal_wrapped(|ui| {
+        for name in names {
+            if ui.small_button(name).clicked() {
+                chosen = Some(name.to_owned());
+            }
+        }
+    });
+    if let Some(name) = chosen {
+        *text = name;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,5 +343,14 @@ mod tests {
             panic!("no draft any more");
         };
         assert_eq!((now.shafts, now.lift_plan), (8, true));
+    }
+
+    #[test]
+    fn a_weave_is_found_by_its_name_and_by_its_notation() {
+        let known = &library::library()[0];
+        assert_eq!(by_name(known.name()).as_ref(), Ok(known.pattern()));
+        let twill = by_name("2/2 twill").expect("a weave");
+        assert_eq!((twill.ends(), twill.picks()), (4, 4));
+        assert!(by_name("2/2 nonsense").is_err());
     }
 }

@@ -39,7 +39,11 @@ impl Layout {
     /// The kept layout, or the usual one where that is of another version or not whole.
     pub fn from_kept(kept: Option<KeptLayout>) -> Self {
         match kept {
-            Some(kept) if kept.version == VERSION && whole(&kept.tree) => Self { tree: kept.tree },
+            Some(mut kept) if kept.version == VERSION && whole(&kept.tree) => {
+                kept.tree.set_height(f32::INFINITY);
+                kept.tree.set_width(f32::INFINITY);
+                Self { tree: kept.tree }
+            }
             _ => Self::default(),
         }
     }
@@ -92,8 +96,8 @@ fn whole(tree: &Tree<Pane>) -> bool {
     let mut seen = HashSet::new();
     let mut next: Vec<TileId> = tree.root.into_iter().collect();
     while let Some(id) = next.pop() {
-        // A tile met twice is a loop, or a tile with two parents.
-        if !seen.insert(id) || seen.len() > MOST_TILES {
+        // A tile met twice is a loop, or a tile with two parents; a hidden one is lost.
+        if !seen.insert(id) || seen.len() > MOST_TILES || !tree.is_visible(id) {
             return false;
         }
         match tree.tiles.get(id) {

@@ -2,6 +2,7 @@
 //! between.
 
 use egui::ViewportCommand;
+use pickglass::edit::Clip;
 
 use super::app::App;
 use super::asking::{Answer, Next};
@@ -10,6 +11,7 @@ use super::files::{FileEvent, Writing};
 use super::session::Session;
 use super::toasts::Grade;
 use super::volume;
+use crate::command_table::Tool;
 use crate::opened::Opened;
 
 impl App {
@@ -204,6 +206,10 @@ impl App {
             Some(Answer::Instead { edit, always }) => {
                 self.asking.derive_always |= always;
                 self.edit(edit);
+            }
+            Some(Answer::Stamp(weave)) => {
+                self.draft.copy(Clip::of_weave(&weave));
+                self.draft.take_tool(ctx, Tool::Stamp);
             }
             Some(Answer::Filled(name, edits)) => {
                 self.begin(name);

@@ -59,6 +59,7 @@ impl Situation<'_> {
             | Command::Copy
             | Command::Clear
             | Command::Deselect
+            | Command::FillSelection
             | Command::CropToSelection => self.open && self.selection,
             _ => self.open,
         }

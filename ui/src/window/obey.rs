@@ -65,7 +65,7 @@ impl App {
             Command::Shortcuts => self.show_shortcuts = true,
             Command::ResetLayout => self.layout.reset(),
             Command::NextPane => {
-                if self.draft.in_use() {
+                if self.draft.has_focus(ctx) {
                     self.preview.focus(ctx);
                 } else {
                     self.draft.focus(ctx);

@@ -78,6 +78,18 @@ impl App {
             }
             Command::Resize => return self.asking.fill_in(Form::size(design)),
             Command::Repeat => return self.asking.fill_in(Form::repeat(design)),
+            Command::StampWeave => {
+                return self.asking.fill_in(Form::Stamp("2/2 twill".to_owned()));
+            }
+            Command::FillSelection => match (selected, selection, self.draft.clip()) {
+                (Some(cells), Some(rect), Some(clip)) => {
+                    clip.stamp(cells, (rect.end.into(), rect.pick.into()))
+                }
+                _ => {
+                    let what = "Select crossings (S), and copy or choose a weave to fill with.";
+                    return self.warn(what, "The design is as it was.");
+                }
+            },
             Command::Words => return self.asking.fill_in(Form::words(design)),
             Command::Loom => {
                 match Form::loom(design) {

@@ -34,6 +34,8 @@ const STEPS: [f64; 22] = [
 ];
 /// The step of one pixel a crossing.
 const ONE: usize = 6;
+/// Small designs are seen no smaller than at this step: 2 pixels a crossing.
+const SMALL: usize = 7;
 /// A design that fits is drawn no larger than this step: 24 pixels a crossing.
 const LARGEST_FIT: usize = 17;
 
@@ -43,6 +45,8 @@ pub struct Look {
     /// The point in the middle, in crossings.
     pub centre: [f64; 2],
     step: usize,
+    /// The furthest step: beyond, the design itself would be lost among its repeats.
+    least: usize,
 }
 
 impl Look {
@@ -56,6 +60,7 @@ impl Look {
         Self {
             centre: [f64::from(ends) / 2.0, f64::from(picks) / 2.0],
             step,
+            least: step.saturating_sub(2).min(SMALL),
         }
     }
 
@@ -79,7 +84,9 @@ impl Look {
     pub fn zoom(&mut self, steps: i32, anchor: [f64; 2]) {
         let before = self.cell();
         let last = STEPS.len() as i32 - 1;
-        self.step = (self.step as i32).saturating_add(steps).clamp(0, last) as usize;
+        self.step = (self.step as i32)
+            .saturating_add(steps)
+            .clamp(self.least as i32, last) as usize;
         for (centre, anchor) in self.centre.iter_mut().zip(anchor) {
             *centre += anchor / before - anchor / STEPS[self.step];
         }
@@ -240,6 +247,9 @@ mod tests {
         assert!((look.cell() - 24.0).abs() < 1e-9);
         let huge = Look::fitting(16_000, 20_000, [632.0, 464.0]);
         assert!((huge.cell() - 1.0 / 64.0).abs() < 1e-9 && huge.level() == 6);
+        // Two steps further than the whole design, no more.
+        look.zoom(-99, [0.0, 0.0]);
+        assert!((look.cell() - 2.0).abs() < 1e-9);
         look.pan([1e9, f64::MIN], 16, 16);
         assert_eq!(look.centre, [-16.0, 32.0]);
     }

@@ -86,7 +86,6 @@ impl DraftPane {
             self.hover = looked_at;
             actions.push(Action::Hover(looked_at));
         }
-        self.in_use = response.hovered() || response.has_focus();
         if response.has_focus()
             && ui.input(|input| input.key_pressed(Key::Escape))
             && self.stroke.is_none()
@@ -239,7 +238,6 @@ impl DraftPane {
             for touch in touches {
                 self.band_stroke(ui, document, band, touch, actions);
             }
-            self.in_use |= response.hovered() || response.has_focus();
             let at = ui.input(|input| input.pointer.hover_pos());
             if let Some(at) = at.filter(|_| response.contains_pointer()) {
                 self.hover = Some(grid.crossing(at));

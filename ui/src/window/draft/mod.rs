@@ -95,7 +95,6 @@ pub struct DraftPane {
     wheel: f32,
     /// The shaft and the column that bands begin with, where not all of them fit.
     first_shaft: [i64; 2],
-    in_use: bool,
     /// What the field under the pointer is for.
     told: Option<&'static str>,
     /// How the pane was divided when it was shown last.
@@ -135,7 +134,6 @@ impl DraftPane {
             hover: None,
             wheel: 0.0,
             first_shaft: [0; 2],
-            in_use: false,
             told: None,
             #[cfg(test)]
             laid: None,
@@ -266,9 +264,11 @@ impl DraftPane {
         self.regions[usize::from(button == Button::Second)]
     }
 
-    /// Whether keys such as `F` mean the draft.
-    pub fn in_use(&self) -> bool {
-        self.in_use
+    /// Whether the keyboard is in the drawdown or a field beside it.
+    pub fn has_focus(&self, ctx: &egui::Context) -> bool {
+        let focused = ctx.memory(|memory| memory.focused());
+        let zones = self.bands.iter().chain([&self.drawdown]);
+        focused.is_some() && zones.into_iter().any(|zone| zone.id() == focused)
     }
 
     /// The crossing that any view marks.

@@ -98,8 +98,11 @@ impl Tiles {
             Touched::All => &[],
         };
         let (ends, picks) = (document.design().ends(), document.design().picks());
+        let begun = Instant::now();
         for (key, tile) in &mut self.tiles {
-            if rects.is_empty() {
+            // What is not looked at, or takes too long, waits until it is.
+            let unseen = tile.seen < self.frame;
+            if rects.is_empty() || unseen || begun.elapsed() > BUDGET {
                 tile.stale = true;
                 continue;
             }

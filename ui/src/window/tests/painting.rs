@@ -264,3 +264,20 @@ fn the_palette_finds_and_does() {
     assert_ne!(up(&window, 0, 0), before);
     assert!(!shows(&window, "Exchange warp up and weft up"));
 }
+
+#[test]
+fn one_key_moves_the_keyboard_between_draft_and_cloth() {
+    let mut window = still_window("oxford");
+    let ctx = window.ctx.clone();
+    let in_draft = |window: &Window| window.state().draft.has_focus(&window.ctx);
+    assert!(!in_draft(&window));
+    window.key_press(Key::F6);
+    window.run_steps(2);
+    assert!(in_draft(&window));
+    window.key_press(Key::F6);
+    window.run_steps(2);
+    assert!(!in_draft(&window) && ctx.memory(|memory| memory.focused()).is_some());
+    window.key_press(Key::F6);
+    window.run_steps(2);
+    assert!(in_draft(&window));
+}
