@@ -72,10 +72,11 @@ fn everything() -> Design {
         })
         .unwrap();
     design.notes = "first\nsecond \\ \"quoted\"".into();
-    design.origin.first_end = FirstEnd::Right;
-    design.origin.program = Some("Other".into());
-    design.origin.palette = vec![Srgb(9, 8, 7)];
-    design.origin.sections = vec![ForeignSection {
+    let origin = std::sync::Arc::make_mut(&mut design.origin);
+    origin.first_end = FirstEnd::Right;
+    origin.program = Some("Other".into());
+    origin.palette = vec![Srgb(9, 8, 7)];
+    origin.sections = vec![ForeignSection {
         name: "PRIVATE X".into(),
         text: "a=b\n;".into(),
     }];

@@ -125,7 +125,7 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
 }
 
 /// SGGX roughness of a yarn's fibres.
-fn roughness(yarn: &Yarn) -> f32 {
+pub(super) fn roughness(yarn: &Yarn) -> f32 {
     yarn.alpha().clamp(0.01, 1.0)
 }
 
@@ -193,15 +193,22 @@ impl ClothVolume {
         settings: &ClothSettings,
         job: &Job,
     ) -> Result<(Assignment, Vec<bool>), ClothError> {
+        Self::assign_weave(&design.weave(), design.lattice(), catalogue, settings, job)
+    }
+
+    /// As [`ClothVolume::assign`] for a drawdown that is known already.
+    ///
+    /// # Errors
+    /// When the lattice is not usable or the job is cancelled.
+    pub fn assign_weave(
+        weave: &WeavePattern,
+        lattice: Lattice,
+        catalogue: &Catalogue,
+        settings: &ClothSettings,
+        job: &Job,
+    ) -> Result<(Assignment, Vec<bool>), ClothError> {
         let SynthesisSettings { method, seed, .. } = settings.synthesis;
-        let assignment = assign(
-            &design.weave(),
-            design.lattice(),
-            catalogue,
-            method,
-            seed,
-            job,
-        )?;
+        let assignment = assign(weave, lattice, catalogue, method, seed, job)?;
         let mut blocks = vec![false; catalogue.blocks()];
         for end in 0..assignment.ends() {
             for &block in assignment.column(end) {
@@ -234,24 +241,9 @@ impl ClothVolume {
         settings: ClothSettings,
         job: &Job,
     ) -> Result<Self, ClothError> {
-        let SynthesisSettings {
-            method,
-            rank,
-            seed,
-            patch,
-        } = settings.synthesis;
-        let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
-        let predicted: Vec<_> = sets.iter().map(|set| set.predicted.clone()).collect();
-        let edge_fix = EdgeFix::with_basis_of(&predicted, &heights, &catalogue, rank, job)?;
-        job.check()?;
-        let bits = neighbour_bits(&catalogue, design.lattice(), method);
-        let allowance = Allowance {
-            tap: settings.tap,
-            ..Allowance::FULL
-        };
-        let majorants = BlockMajorants::new(&catalogue, &sets, &edge_fix, bits, allowance);
-        let full = sets
-            .iter()
+        let SynthesisSettings { seed, patch, .. } = settings.synthesis;
+        let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
+        let full = (sets.iter())
             .map(|set| [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction))
             .collect();
         Ok(Self {
@@ -259,8 +251,8 @@ impl ClothVolume {
             catalogue,
             sets,
             classes,
-            edge_fix: Arc::new(edge_fix),
-            majorants: Arc::new(majorants),
+            edge_fix,
+            majorants,
             assignment,
             randomisation: Randomisation { seed, patch },
             lattice: design.lattice(),
@@ -420,6 +412,28 @@ impl ClothVolume {
         ));
         self
     }
+}
+
+/// What follows from the exemplars alone: how seams are closed, and majorants.
+pub(super) fn fitted(
+    catalogue: &Catalogue,
+    sets: &[Arc<ExemplarSet>],
+    settings: &ClothSettings,
+    lattice: Lattice,
+    job: &Job,
+) -> Result<(Arc<EdgeFix>, Arc<BlockMajorants>), ClothError> {
+    let SynthesisSettings { method, rank, .. } = settings.synthesis;
+    let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
+    let predicted: Vec<_> = sets.iter().map(|set| set.predicted.clone()).collect();
+    let edge_fix = EdgeFix::with_basis_of(&predicted, &heights, catalogue, rank, job)?;
+    job.check().map_err(SynthesisError::from)?;
+    let bits = neighbour_bits(catalogue, lattice, method);
+    let allowance = Allowance {
+        tap: settings.tap,
+        ..Allowance::FULL
+    };
+    let majorants = BlockMajorants::new(catalogue, sets, &edge_fix, bits, allowance);
+    Ok((Arc::new(edge_fix), Arc::new(majorants)))
 }
 
 /// Consistent neighbours may be relied on when every crossing has a consistent candidate.

@@ -35,30 +35,37 @@ pub struct HairLayer<'a> {
 impl<'a> HairLayer<'a> {
     /// The hairs of a cloth; `None` when no yarn of it has any.
     pub fn new(cloth: &'a ClothVolume, hairy: Vec<bool>) -> Option<Self> {
-        let set = cloth.sets().iter().max_by(|a, b| {
-            let hairs = |s: &crate::exemplar::ExemplarSet| {
-                s.pair.warp.hairs_per_mm + s.pair.weft.hairs_per_mm
-            };
-            hairs(a).total_cmp(&hairs(b))
-        })?;
-        let pitch = Vec2::new(
-            cloth.ends().repeat_mm() as f32 / cloth.ends().threads() as f32,
-            cloth.picks().repeat_mm() as f32 / cloth.picks().threads() as f32,
-        );
-        let patch = HairPatch::new(&set.pair.warp, &set.pair.weft, pitch, 16)?;
-        let crowns = crowns(&set.pair.warp, &set.pair.weft, pitch);
+        Some(Self::of(cloth, HairLayer::patch(cloth)?, hairy))
+    }
+
+    /// The patch of hairs that repeats over a cloth: it is worth keeping, as long as
+    /// families, sizes and spacing of the yarns stay. `None` when no yarn has any hairs.
+    pub fn patch(cloth: &ClothVolume) -> Option<Arc<HairPatch>> {
+        let set = hairiest(cloth)?;
+        HairPatch::new(&set.pair.warp, &set.pair.weft, pitch(cloth), 16).map(Arc::new)
+    }
+
+    /// The hairs of a cloth, from its own [`HairLayer::patch`].
+    pub fn of(cloth: &'a ClothVolume, patch: Arc<HairPatch>, hairy: Vec<bool>) -> Self {
+        let (crowns, full) = match hairiest(cloth) {
+            Some(set) => (
+                crowns(&set.pair.warp, &set.pair.weft, pitch(cloth)),
+                [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction),
+            ),
+            None => Default::default(),
+        };
         let cell_mm = patch.voxel_mm.z * CELL as f32;
-        Some(Self {
+        Self {
             cloth,
             crowns,
             cells: crowns.map(|[a, b]| {
                 let lift = ((a - b).abs() / cell_mm).ceil() as usize;
                 HairCells::new(&patch, lift)
             }),
-            full: [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction),
-            patch: Arc::new(patch),
+            full,
+            patch,
             hairy,
-        })
+        }
     }
 
     /// Size of a voxel of the layer, mm.
@@ -91,6 +98,23 @@ impl<'a> HairLayer<'a> {
         let [a, b] = self.crowns[face];
         (a.min(b), a.max(b))
     }
+}
+
+/// The exemplar set whose yarns have the most hairs.
+fn hairiest(cloth: &ClothVolume) -> Option<&Arc<crate::exemplar::ExemplarSet>> {
+    cloth.sets().iter().max_by(|a, b| {
+        let hairs =
+            |s: &crate::exemplar::ExemplarSet| s.pair.warp.hairs_per_mm + s.pair.weft.hairs_per_mm;
+        hairs(a).total_cmp(&hairs(b))
+    })
+}
+
+/// Mean spacing of ends and picks, mm.
+fn pitch(cloth: &ClothVolume) -> Vec2 {
+    Vec2::new(
+        cloth.ends().repeat_mm() as f32 / cloth.ends().threads() as f32,
+        cloth.picks().repeat_mm() as f32 / cloth.picks().threads() as f32,
+    )
 }
 
 /// Crown heights of a plain weave of these yarns, front and back: weft up, warp up.

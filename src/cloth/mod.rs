@@ -12,6 +12,9 @@ mod build;
 pub mod colour;
 pub mod expected;
 mod export;
+mod face_relief;
+mod face_table;
+mod follow;
 mod hair_cells;
 mod hairs;
 mod lookup;
@@ -20,5 +23,7 @@ mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
 pub use export::{ClothWindow, Part, Region, WindowError};
+pub use face_relief::{FaceRelief, TEXELS, neighbourhood};
+pub use face_table::{FaceTable, Texel};
 pub use hairs::{HairLayer, HairWalk};
 pub use walk::ClothWalk;

@@ -1,5 +1,7 @@
 //! The design: everything the designer decided, and what was kept of the file it is from.
 
+use std::sync::Arc;
+
 use super::colourways::{self, Colourway, ColourwayError};
 use super::lattice::{Lattice, LatticeError};
 use super::maps::{YarnMap, YarnMaps};
@@ -110,24 +112,39 @@ pub struct Origin {
     pub palette: Vec<Srgb>,
 }
 
+impl Origin {
+    /// Bytes of memory of its texts and lists.
+    fn bytes(&self) -> usize {
+        let sections = self.sections.iter();
+        let texts: usize = sections.map(|kept| kept.name.len() + kept.text.len()).sum();
+        let threads = [&self.ends, &self.picks].into_iter().flatten();
+        let lists: usize = threads
+            .map(|stated| 8 * (stated.spacings.len() + stated.thicknesses.len()))
+            .sum();
+        size_of::<Self>() + texts + lists + 3 * self.palette.len()
+    }
+}
+
 /// What a designer makes: a weave, yarns and where they lie, a sett and a repeat.
 ///
 /// A `Design` is always whole: every yarn a map names is there, all numbers are finite and
-/// in range, and the drawdown is of a size that can be made.
+/// in range, and the drawdown is of a size that can be made. Clones share what they can.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
     /// What the designer calls it.
     pub name: String,
     /// Notes, lines separated by `\n`.
     pub notes: String,
+    /// What its own yarns are called among the colourways; empty if nobody named them.
+    pub colourway: String,
     /// What is remembered of the file it came from.
-    pub origin: Origin,
+    pub origin: Arc<Origin>,
     structure: Structure,
-    yarns: Vec<Yarn>,
-    maps: YarnMaps,
-    sett: Sett,
+    yarns: Arc<Vec<Yarn>>,
+    maps: Arc<YarnMaps>,
+    sett: Arc<Sett>,
     lattice: Lattice,
-    colourways: Vec<Colourway>,
+    colourways: Arc<Vec<Colourway>>,
 }
 
 impl Design {
@@ -153,13 +170,14 @@ impl Design {
         Ok(Self {
             name: name.into(),
             notes: String::new(),
-            origin: Origin::default(),
+            colourway: String::new(),
+            origin: Arc::default(),
             structure,
-            yarns,
-            maps,
-            sett,
+            yarns: Arc::new(yarns),
+            maps: Arc::new(maps),
+            sett: Arc::new(sett),
             lattice: Lattice::default(),
-            colourways: Vec::new(),
+            colourways: Arc::default(),
         })
     }
 
@@ -181,7 +199,7 @@ impl Design {
         if let Some(fault) = sett.fault() {
             return Err(DesignError::Number(fault));
         }
-        self.sett = sett;
+        self.sett = Arc::new(sett);
         Ok(self)
     }
 
@@ -199,6 +217,83 @@ impl Design {
         Ok(self)
     }
 
+    /// The same design with another weave, other yarns and other places for them, all at
+    /// once: what an edit needs that changes the size or the number of yarns.
+    ///
+    /// # Errors
+    /// [`DesignError`] names the part that does not fit.
+    pub fn with_parts(
+        mut self,
+        structure: Structure,
+        yarns: Vec<Yarn>,
+        maps: YarnMaps,
+        colourways: Vec<Colourway>,
+    ) -> Result<Self, DesignError> {
+        self.structure = structure;
+        self.colourways = Arc::new(colourways);
+        self.with_yarns(yarns, maps)
+    }
+
+    /// The weave, to be changed in place by an edit that keeps its size and names only
+    /// yarns that are there: checking those again would go through every crossing.
+    pub(crate) fn structure_mut(&mut self) -> &mut Structure {
+        &mut self.structure
+    }
+
+    /// Which yarn lies where, to be changed in place on the same terms.
+    pub(crate) fn maps_mut(&mut self) -> &mut YarnMaps {
+        Arc::make_mut(&mut self.maps)
+    }
+
+    /// Bytes of memory that this design does not share with `other`, within a few hundred.
+    pub fn bytes_beyond(&self, other: Option<&Self>) -> usize {
+        fn unless<T>(mine: &Arc<T>, other: Option<&Arc<T>>, bytes: impl Fn(&T) -> usize) -> usize {
+            match other {
+                Some(other) if Arc::ptr_eq(mine, other) => 0,
+                _ => bytes(mine),
+            }
+        }
+        let yarns = |yarns: &[Yarn]| {
+            size_of_val(yarns) + yarns.iter().map(|yarn| yarn.name.len()).sum::<usize>()
+        };
+        let map = |mine: &YarnMap, other: Option<&YarnMap>| match (mine, other) {
+            (YarnMap::Order(order), _) => order.len() * size_of::<YarnId>(),
+            (YarnMap::Crossings(grid), Some(YarnMap::Crossings(other))) => {
+                grid.bytes_beyond(Some(other))
+            }
+            (YarnMap::Crossings(grid), _) => grid.bytes_beyond(None),
+        };
+        let maps = |maps: &YarnMaps| {
+            map(&maps.warp, other.map(|other| &other.maps.warp))
+                + map(&maps.weft, other.map(|other| &other.maps.weft))
+        };
+        let pitches =
+            |density: &Density| density.pitches_mm.as_ref().map_or(0, |list| 4 * list.len());
+        size_of::<Self>()
+            + self.name.len()
+            + self.notes.len()
+            + self
+                .structure
+                .bytes_beyond(other.map(|other| &other.structure))
+            + unless(
+                &self.origin,
+                other.map(|other| &other.origin),
+                Origin::bytes,
+            )
+            + unless(&self.yarns, other.map(|other| &other.yarns), |list| {
+                yarns(list)
+            })
+            + unless(&self.maps, other.map(|other| &other.maps), maps)
+            + unless(&self.sett, other.map(|other| &other.sett), |sett| {
+                pitches(&sett.ends) + pitches(&sett.picks)
+            })
+            + unless(
+                &self.colourways,
+                other.map(|other| &other.colourways),
+                |list| list.iter().map(|colourway| yarns(&colourway.yarns)).sum(),
+            )
+    }
+
     /// The same design in other yarns and another arrangement of them.
     ///
     /// # Errors
@@ -211,7 +306,7 @@ impl Design {
         check_map("weft", &maps.weft, yarns.len(), ends, picks)?;
         colourways::check(&self.colourways, yarns.len())?;
         check_regions(&self.structure, yarns.len())?;
-        (self.yarns, self.maps) = (yarns, maps);
+        (self.yarns, self.maps) = (Arc::new(yarns), Arc::new(maps));
         Ok(self)
     }
 
@@ -221,7 +316,7 @@ impl Design {
     /// [`ColourwayError`] if one does not fit the design.
     pub fn with_colourways(mut self, colourways: Vec<Colourway>) -> Result<Self, DesignError> {
         colourways::check(&colourways, self.yarns.len())?;
-        self.colourways = colourways;
+        self.colourways = Arc::new(colourways);
         Ok(self)
     }
 
@@ -232,9 +327,13 @@ impl Design {
     pub fn with_colourway(mut self, name: &str) -> Result<Self, ColourwayError> {
         let named = |known: &&Colourway| colourways::same_name(&known.name, name);
         let Some(chosen) = self.colourways.iter().find(named) else {
+            if !self.colourway.is_empty() && colourways::same_name(&self.colourway, name) {
+                return Ok(self);
+            }
             return Err(colourways::unknown(name, &self.name, &self.colourways));
         };
-        self.yarns = chosen.yarns.clone();
+        self.yarns = Arc::new(chosen.yarns.clone());
+        self.colourway = chosen.name.clone();
         Ok(self)
     }
 

@@ -112,6 +112,25 @@ impl Ties {
             .map_or(0, |&most| u32::from(most) + 1)
     }
 
+    /// The same sets, with other ones at some places (place, set); the last of several for
+    /// one place counts, and places beyond the last set are ignored.
+    pub fn with_rows(&self, changes: &[(u32, Vec<u16>)]) -> Self {
+        let changes: BTreeMap<usize, &[u16]> = changes
+            .iter()
+            .map(|(place, set)| (*place as usize, set.as_slice()))
+            .collect();
+        let mut ties = Self::with_room(self.len(), self.members.len());
+        for (place, row) in self.iter().enumerate() {
+            ties.push(changes.get(&place).copied().unwrap_or(row));
+        }
+        ties
+    }
+
+    /// Bytes of memory.
+    fn bytes(&self) -> usize {
+        4 * self.starts.capacity() + 2 * self.members.capacity()
+    }
+
     /// Members of all sets together.
     pub fn total(&self) -> usize {
         self.members.len()
@@ -301,6 +320,17 @@ impl Draft {
     /// the other. Picks that lift alike are worked out once.
     pub fn drawdown(&self) -> WeavePattern {
         let mut pattern = WeavePattern::new(self.ends(), self.picks());
+        self.weave_picks(0..self.picks(), &mut pattern);
+        pattern
+    }
+
+    /// Weaves some picks into a drawdown of the draft's size; what is the same already
+    /// stays shared with clones.
+    pub(crate) fn weave_picks(
+        &self,
+        picks: impl IntoIterator<Item = u32>,
+        pattern: &mut WeavePattern,
+    ) {
         let words = pattern.words_per_pick() as usize;
         let shafts = ShaftEnds::new(&self.threading, self.shafts as usize, words);
         let treadles = match &self.lifting {
@@ -309,8 +339,8 @@ impl Draft {
         };
         let mut known: BTreeMap<&[u16], u32> = BTreeMap::new();
         let mut row = vec![0u64; words];
-        for (pick, named) in self.lifts().iter().enumerate() {
-            let pick = pick as u32;
+        for pick in picks {
+            let named = self.lifts().row(pick as usize);
             if let Some(&same) = known.get(named) {
                 for word in 0..words as u32 {
                     let bits = pattern.pick_word(word, same);
@@ -340,7 +370,15 @@ impl Draft {
             }
             known.insert(named, pick);
         }
-        pattern
+    }
+
+    /// Bytes of memory.
+    pub(super) fn bytes(&self) -> usize {
+        let lifting = match &self.lifting {
+            Lifting::Treadled { tieup, treadling } => tieup.bytes() + treadling.bytes(),
+            Lifting::LiftPlan(plan) => plan.bytes(),
+        };
+        self.threading.bytes() + lifting
     }
 }
 

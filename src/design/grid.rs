@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use super::pattern::{SizeError, check_size};
-
-const TILE: u32 = 64;
+use super::tiles::{TILE, Tiles};
 
 /// Values by crossing, in 64×64 tiles that clones share until they are written.
 ///
@@ -13,7 +12,7 @@ const TILE: u32 = 64;
 pub struct Grid<T> {
     ends: u32,
     picks: u32,
-    tiles: Vec<Arc<[T]>>,
+    tiles: Tiles<[T]>,
 }
 
 impl<T: Copy + PartialEq> Grid<T> {
@@ -25,11 +24,10 @@ impl<T: Copy + PartialEq> Grid<T> {
     pub fn filled(ends: u32, picks: u32, value: T) -> Result<Self, SizeError> {
         check_size(u64::from(ends), u64::from(picks))?;
         let blank: Arc<[T]> = vec![value; (TILE * TILE) as usize].into();
-        let count = ends.div_ceil(TILE) as usize * picks.div_ceil(TILE) as usize;
         Ok(Self {
             ends,
             picks,
-            tiles: vec![blank; count],
+            tiles: Tiles::filled(ends, picks, blank),
         })
     }
 
@@ -45,19 +43,19 @@ impl<T: Copy + PartialEq> Grid<T> {
         check_size(u64::from(ends), u64::from(picks))?;
         let usual = value(0, 0);
         let mut grid = Self::filled(ends, picks, usual)?;
-        let columns = ends.div_ceil(TILE);
         let mut cells = Vec::with_capacity((TILE * TILE) as usize);
-        for (index, tile) in grid.tiles.iter_mut().enumerate() {
-            let (left, bottom) = (index as u32 % columns * TILE, index as u32 / columns * TILE);
-            cells.clear();
-            for pick in bottom..bottom + TILE {
-                for end in left..left + TILE {
-                    let inside = end < ends && pick < picks;
-                    cells.push(if inside { value(end, pick) } else { usual });
+        for bottom in (0..picks).step_by(TILE as usize) {
+            for left in (0..ends).step_by(TILE as usize) {
+                cells.clear();
+                for pick in bottom..bottom + TILE {
+                    for end in left..left + TILE {
+                        let inside = end < ends && pick < picks;
+                        cells.push(if inside { value(end, pick) } else { usual });
+                    }
                 }
-            }
-            if cells.iter().any(|&cell| cell != usual) {
-                *tile = cells.as_slice().into();
+                if cells.iter().any(|&cell| cell != usual) {
+                    *grid.tiles.slot(left, bottom) = cells.as_slice().into();
+                }
             }
         }
         Ok(grid)
@@ -73,16 +71,9 @@ impl<T: Copy + PartialEq> Grid<T> {
         self.picks
     }
 
-    fn place(&self, end: u32, pick: u32) -> (usize, usize) {
-        let tile =
-            (pick / TILE) as usize * self.ends.div_ceil(TILE) as usize + (end / TILE) as usize;
-        (tile, (pick % TILE * TILE + end % TILE) as usize)
-    }
-
     /// The value at a crossing inside the grid.
     pub fn get(&self, end: u32, pick: u32) -> T {
-        let (tile, cell) = self.place(end, pick);
-        self.tiles[tile][cell]
+        self.tiles.at(end, pick)[cell(end, pick)]
     }
 
     /// The value at any crossing of the straight repeat.
@@ -95,10 +86,43 @@ impl<T: Copy + PartialEq> Grid<T> {
 
     /// Writes one crossing; its tile is copied first if a clone shares it.
     pub fn set(&mut self, end: u32, pick: u32, value: T) {
-        let (tile, cell) = self.place(end, pick);
-        if self.tiles[tile][cell] != value {
-            Arc::make_mut(&mut self.tiles[tile])[cell] = value;
+        if self.get(end, pick) != value {
+            Arc::make_mut(self.tiles.slot(end, pick))[cell(end, pick)] = value;
         }
+    }
+
+    /// The values of ends 64·`word` … 64·`word`+63 along a pick, fewer at the right edge.
+    pub fn pick_values(&self, word: u32, pick: u32) -> &[T] {
+        let width = (self.ends - word * TILE).min(TILE);
+        let first = cell(0, pick);
+        &self.tiles.at(word * TILE, pick)[first..first + width as usize]
+    }
+
+    /// Puts `to(value)` in the place of every value.
+    pub(crate) fn replace_values(&mut self, to: impl Fn(T) -> T) {
+        self.tiles.replace(|tile| {
+            if tile.iter().all(|&value| to(value) == value) {
+                return Arc::clone(tile);
+            }
+            tile.iter().map(|&value| to(value)).collect()
+        });
+    }
+
+    /// The 64 × 64 blocks that are not the very same memory in `other`; see
+    /// [`super::WeavePattern::unshared`].
+    pub fn unshared<'t>(
+        &'t self,
+        other: &'t Self,
+    ) -> Option<impl Iterator<Item = (u32, u32)> + 't> {
+        let same = (self.ends, self.picks) == (other.ends, other.picks);
+        same.then(|| self.tiles.unshared(&other.tiles))
+    }
+
+    /// Bytes of memory that this grid does not share with `other`.
+    pub fn bytes_beyond(&self, other: Option<&Self>) -> usize {
+        let tile = (TILE * TILE) as usize * size_of::<T>();
+        let other = other.map(|other| &other.tiles);
+        self.tiles.bytes_beyond(other, tile)
     }
 
     /// All values, pick by pick from the bottom, each from left to right.
@@ -108,8 +132,17 @@ impl<T: Copy + PartialEq> Grid<T> {
 }
 
 impl<T: Copy + PartialEq + Ord> Grid<T> {
-    /// The largest value, by whole tiles where they are shared.
+    /// The largest value.
     pub fn max(&self) -> Option<T> {
-        self.iter().max()
+        let words = self.ends.div_ceil(TILE);
+        let picks = (0..self.picks).flat_map(|pick| (0..words).map(move |word| (word, pick)));
+        picks
+            .filter_map(|(word, pick)| self.pick_values(word, pick).iter().copied().max())
+            .max()
     }
+}
+
+/// Where a crossing stands in its tile.
+fn cell(end: u32, pick: u32) -> usize {
+    (pick % TILE * TILE + end % TILE) as usize
 }

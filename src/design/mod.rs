@@ -14,15 +14,21 @@
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
+//! | `count` | yarn counts as spinners and weavers write them |
+//! | `stripes` | the order of a direction's yarns as it is typed ("12 navy 4 cream") |
+//! | `tiles` | what patterns and grids are kept in: tiles that clones share |
 //! | `document` | the design that holds all of these together |
 //! | `colourways` | named sets of yarns for one design |
 //! | `floats` | what a designer checks first |
+//! | `reach` | the floats where one looks |
 //! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
+//! | `swatch` | the drawdown as pixels, near and far |
 //! | `colour` | how different two colours look |
 
 pub mod checks;
 mod colour;
 mod colourways;
+mod count;
 mod derive;
 mod document;
 mod draft;
@@ -32,14 +38,19 @@ mod lattice;
 pub mod library;
 mod maps;
 mod pattern;
+mod reach;
 mod sett;
 mod source;
+pub mod stripes;
 mod structure;
+mod swatch;
+mod tiles;
 mod weaves;
 mod yarn;
 
 pub use colour::{Lab, delta_e_00, lab};
 pub use colourways::{Colourway, ColourwayError, MAX_COLOURWAYS};
+pub use count::CountUnit;
 pub use derive::{DeriveError, Loom, derive, shafts_needed};
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
@@ -52,11 +63,13 @@ pub use library::{ColourOrders, LibraryWeave, library};
 pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
+pub use reach::{ClothBox, FaceFloat, float_through, long_floats_in};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
 pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
 pub use structure::{
     Corrections, Fill, Filled, Region, RegionYarns, Regions, Structure, StructureError,
 };
+pub use swatch::{Colouring, SwatchWindow, region_colour, swatch};
 pub use weaves::{
     BindError, CombineError, MAX_REPEAT, NotationError, bind_floats, both, counterchange,
     double_cloth, drop_repeat, either, rearranged, repeated, satin, satin_moves, shadow_series,

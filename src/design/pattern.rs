@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-const TILE: u32 = 64;
+use super::tiles::{TILE, Tiles};
 
 /// The most crossings a pattern, map or drawdown may have (2²⁸, 32 MiB of bits): eight
 /// times the largest loom file seen (5120 × 6300).
@@ -84,7 +84,7 @@ pub enum ArtError {
 pub struct WeavePattern {
     ends: u32,
     picks: u32,
-    tiles: Vec<Arc<Tile>>,
+    tiles: Tiles<Tile>,
 }
 
 impl WeavePattern {
@@ -95,11 +95,10 @@ impl WeavePattern {
     pub fn new(ends: u32, picks: u32) -> Self {
         let (ends, picks) = (ends.max(1), picks.max(1));
         let blank = Arc::new([0u64; TILE as usize]);
-        let count = ends.div_ceil(TILE) as usize * picks.div_ceil(TILE) as usize;
         Self {
             ends,
             picks,
-            tiles: vec![blank; count],
+            tiles: Tiles::filled(ends, picks, blank),
         }
     }
 
@@ -190,14 +189,10 @@ impl WeavePattern {
         self.picks
     }
 
-    fn tile(&self, end: u32, pick: u32) -> usize {
-        (pick / TILE) as usize * self.words_per_pick() as usize + (end / TILE) as usize
-    }
-
     /// Whether the warp is on top at a crossing inside the pattern.
     pub fn get(&self, end: u32, pick: u32) -> bool {
         debug_assert!(end < self.ends && pick < self.picks);
-        self.tiles[self.tile(end, pick)][(pick % TILE) as usize] >> (end % TILE) & 1 == 1
+        self.tiles.at(end, pick)[(pick % TILE) as usize] >> (end % TILE) & 1 == 1
     }
 
     /// Whether the warp is on top at any crossing of the straight repeat.
@@ -211,9 +206,9 @@ impl WeavePattern {
     /// Puts the warp (`true`) or the weft on top at a crossing.
     pub fn set(&mut self, end: u32, pick: u32, warp_up: bool) {
         debug_assert!(end < self.ends && pick < self.picks);
-        let tile = self.tile(end, pick);
         if self.get(end, pick) != warp_up {
-            Arc::make_mut(&mut self.tiles[tile])[(pick % TILE) as usize] ^= 1 << (end % TILE);
+            let tile = Arc::make_mut(self.tiles.slot(end, pick));
+            tile[(pick % TILE) as usize] ^= 1 << (end % TILE);
         }
     }
 
@@ -229,7 +224,7 @@ impl WeavePattern {
 
     /// The crossings of ends 64·`word` … 64·`word`+63 along a pick; bit 0 = the leftmost.
     pub fn pick_word(&self, word: u32, pick: u32) -> u64 {
-        self.tiles[self.tile(word * TILE, pick)][(pick % TILE) as usize]
+        self.tiles.at(word * TILE, pick)[(pick % TILE) as usize]
     }
 
     /// Writes 64 crossings of a pick at once; bits beyond the last end are dropped.
@@ -240,9 +235,9 @@ impl WeavePattern {
         } else {
             bits
         };
-        let tile = self.tile(word * TILE, pick);
-        if self.tiles[tile][(pick % TILE) as usize] != bits {
-            Arc::make_mut(&mut self.tiles[tile])[(pick % TILE) as usize] = bits;
+        if self.pick_word(word, pick) != bits {
+            let tile = Arc::make_mut(self.tiles.slot(word * TILE, pick));
+            tile[(pick % TILE) as usize] = bits;
         }
     }
 
@@ -257,7 +252,7 @@ impl WeavePattern {
         let bit = end % TILE;
         (0..self.words_per_end())
             .map(|word| {
-                let tile = &self.tiles[self.tile(end, word * TILE)];
+                let tile = self.tiles.at(end, word * TILE);
                 (0..TILE as usize).fold(0, |bits, row| bits | (tile[row] >> bit & 1) << row)
             })
             .collect()
@@ -266,17 +261,15 @@ impl WeavePattern {
     /// Ends and picks exchanged: crossing (a, b) becomes (b, a). The warp stays `true`.
     pub fn transposed(&self) -> Self {
         let (columns, rows) = (self.words_per_pick(), self.words_per_end());
-        let mut tiles = Vec::with_capacity(self.tiles.len());
-        for column in 0..columns {
-            for row in 0..rows {
-                let tile = &self.tiles[(row * columns + column) as usize];
-                tiles.push(Arc::new(transpose_tile(tile)));
-            }
-        }
+        let turned = |column, row| {
+            let tile = self.tiles.at(column * TILE, row * TILE);
+            Arc::new(transpose_tile(tile))
+        };
+        let row = |column| (0..rows).map(|row| turned(column, row)).collect();
         Self {
             ends: self.picks,
             picks: self.ends,
-            tiles,
+            tiles: Tiles::from_rows((0..columns).map(row)),
         }
     }
 
@@ -311,6 +304,43 @@ impl WeavePattern {
         Self::from_fn(self.ends, self.picks, |end, pick| {
             self.get(self.ends - 1 - end, pick)
         })
+    }
+
+    /// The 64 × 64 blocks of crossings (column and row of blocks, from the bottom left)
+    /// that are not the very same memory in `other`: all that may differ. `None` if the
+    /// sizes do.
+    pub fn unshared<'t>(
+        &'t self,
+        other: &'t Self,
+    ) -> Option<impl Iterator<Item = (u32, u32)> + 't> {
+        let same = (self.ends, self.picks) == (other.ends, other.picks);
+        same.then(|| self.tiles.unshared(&other.tiles))
+    }
+
+    /// Bytes of memory that this pattern does not share with `other`.
+    pub fn bytes_beyond(&self, other: Option<&Self>) -> usize {
+        let other = other.map(|other| &other.tiles);
+        self.tiles.bytes_beyond(other, size_of::<Tile>())
+    }
+
+    /// The crossings (end, pick) that differ from an earlier pattern, in no order to rely
+    /// on; tiles that both share are not looked into. `None` where the sizes differ or
+    /// more than `most` crossings do.
+    pub fn changed_since(&self, earlier: &Self, most: usize) -> Option<Vec<(u32, u32)>> {
+        let mut changed = Vec::new();
+        for (column, row) in self.unshared(earlier)? {
+            for pick in row * TILE..((row + 1) * TILE).min(self.picks) {
+                let mut bits = self.pick_word(column, pick) ^ earlier.pick_word(column, pick);
+                while bits != 0 {
+                    changed.push((column * TILE + bits.trailing_zeros(), pick));
+                    bits &= bits - 1;
+                }
+            }
+            if changed.len() > most {
+                return None;
+            }
+        }
+        Some(changed)
     }
 
     /// Number of crossings with the warp on top.

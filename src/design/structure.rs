@@ -118,6 +118,18 @@ impl Corrections {
     pub fn value(&self) -> &WeavePattern {
         &self.value
     }
+
+    /// None yet, for a design of this size.
+    pub(crate) fn none(ends: u32, picks: u32) -> Self {
+        let mask = WeavePattern::new(ends, picks);
+        let value = mask.clone();
+        Self { mask, value }
+    }
+
+    /// Where corrections stand, and what they say, to be changed in place.
+    pub(crate) fn parts_mut(&mut self) -> (&mut WeavePattern, &mut WeavePattern) {
+        (&mut self.mask, &mut self.value)
+    }
 }
 
 /// A jacquard's artwork: a region for every crossing, the weave of each region, and hand
@@ -125,7 +137,7 @@ impl Corrections {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Regions {
     map: Grid<u16>,
-    palette: Vec<Region>,
+    palette: Arc<Vec<Region>>,
     corrections: Option<Corrections>,
     source: Option<Arc<SourceImage>>,
 }
@@ -154,7 +166,7 @@ impl Regions {
         }
         Ok(Self {
             map,
-            palette,
+            palette: Arc::new(palette),
             corrections,
             source: None,
         })
@@ -174,7 +186,8 @@ impl Regions {
         self,
         corrections: Option<Corrections>,
     ) -> Result<Self, StructureError> {
-        Ok(Self::new(self.map, self.palette, corrections)?.with_source(self.source))
+        let palette = Arc::unwrap_or_clone(self.palette);
+        Ok(Self::new(self.map, palette, corrections)?.with_source(self.source))
     }
 
     /// The picture the artwork was made of, if it was.
@@ -200,7 +213,7 @@ impl Regions {
     /// Gives a region another weave; outlines and corrections stay. False if there is no
     /// such region.
     pub fn set_fill(&mut self, region: u16, fill: Fill) -> bool {
-        match self.palette.get_mut(usize::from(region)) {
+        match Arc::make_mut(&mut self.palette).get_mut(usize::from(region)) {
             Some(entry) => {
                 entry.fill = fill;
                 true
@@ -211,7 +224,7 @@ impl Regions {
 
     /// Fixes a region's weave, or frees it. False if there is no such region.
     pub fn set_locked(&mut self, region: u16, locked: bool) -> bool {
-        match self.palette.get_mut(usize::from(region)) {
+        match Arc::make_mut(&mut self.palette).get_mut(usize::from(region)) {
             Some(entry) => {
                 entry.locked = locked;
                 true
@@ -247,39 +260,75 @@ impl Regions {
 
     /// The drawdown.
     pub fn weave(&self) -> WeavePattern {
-        let (ends, picks) = (self.map.ends(), self.map.picks());
-        let mut pattern = WeavePattern::new(ends, picks);
-        for pick in 0..picks {
-            let mut cursor: Option<(u16, Cursor<'_>)> = None;
+        let mut pattern = WeavePattern::new(self.map.ends(), self.map.picks());
+        for pick in 0..pattern.picks() {
             for word in 0..pattern.words_per_pick() {
-                let mut bits = 0;
-                let first = word * 64;
-                for end in first..(first + 64).min(ends) {
-                    let number = self.map.get(end, pick);
-                    let along = match &mut cursor {
-                        Some((known, along)) if *known == number => along,
-                        other => {
-                            let region = &self.palette[usize::from(number)];
-                            let along = Cursor::new(region, end, pick);
-                            &mut other.insert((number, along)).1
-                        }
-                    };
-                    bits |= u64::from(along.step()) << (end - first);
-                }
-                pattern.set_pick_word(word, pick, bits);
-            }
-        }
-        if let Some(corrections) = &self.corrections {
-            for pick in 0..pattern.picks() {
-                for word in 0..pattern.words_per_pick() {
-                    let mask = corrections.mask.pick_word(word, pick);
-                    let value = corrections.value.pick_word(word, pick);
-                    let woven = pattern.pick_word(word, pick);
-                    pattern.set_pick_word(word, pick, woven & !mask | value & mask);
-                }
+                pattern.set_pick_word(word, pick, self.weave_word(word, pick));
             }
         }
         pattern
+    }
+
+    /// What ends 64·`word` … 64·`word`+63 weave along a pick, corrections included; bit 0 =
+    /// the leftmost.
+    pub fn weave_word(&self, word: u32, pick: u32) -> u64 {
+        let mut bits = 0;
+        let mut cursor: Option<(u16, Cursor<'_>)> = None;
+        for (place, &number) in self.map.pick_values(word, pick).iter().enumerate() {
+            let along = match &mut cursor {
+                Some((known, along)) if *known == number => along,
+                other => {
+                    let region = &self.palette[usize::from(number)];
+                    let along = Cursor::new(region, 64 * word + place as u32, pick);
+                    &mut other.insert((number, along)).1
+                }
+            };
+            bits |= u64::from(along.step()) << place;
+        }
+        match &self.corrections {
+            Some(corrections) => {
+                let mask = corrections.mask.pick_word(word, pick);
+                bits & !mask | corrections.value.pick_word(word, pick) & mask
+            }
+            None => bits,
+        }
+    }
+
+    fn bytes_beyond(&self, other: Option<&Self>) -> usize {
+        let map = self.map.bytes_beyond(other.map(|other| &other.map));
+        let palette = match other {
+            Some(other) if Arc::ptr_eq(&self.palette, &other.palette) => 0,
+            _ => self
+                .palette
+                .iter()
+                .map(|region| {
+                    size_of::<Region>() + region.name.len() + region.fill.pattern.bytes_beyond(None)
+                })
+                .sum(),
+        };
+        let corrections = self.corrections.as_ref().map_or(0, |mine| {
+            let before = other.and_then(|other| other.corrections.as_ref());
+            mine.mask.bytes_beyond(before.map(|before| &before.mask))
+                + mine.value.bytes_beyond(before.map(|before| &before.value))
+        });
+        let source = match (&self.source, other.and_then(|other| other.source.as_ref())) {
+            (Some(mine), Some(other)) if Arc::ptr_eq(mine, other) => 0,
+            (Some(mine), _) => 3 * mine.pixels().len(),
+            (None, _) => 0,
+        };
+        map + palette + corrections + source
+    }
+
+    /// The parts that an edit changes in place; it keeps the sizes and names only regions
+    /// that are there.
+    pub(crate) fn parts_mut(
+        &mut self,
+    ) -> (&mut Grid<u16>, &mut Vec<Region>, &mut Option<Corrections>) {
+        (
+            &mut self.map,
+            Arc::make_mut(&mut self.palette),
+            &mut self.corrections,
+        )
     }
 }
 
@@ -392,6 +441,22 @@ impl Structure {
         }
     }
 
+    /// Bytes of memory that this weave does not share with `other`.
+    pub(super) fn bytes_beyond(&self, other: Option<&Self>) -> usize {
+        match (self, other) {
+            (Self::Pattern(pattern), Some(Self::Pattern(other))) => {
+                pattern.bytes_beyond(Some(other))
+            }
+            (Self::Pattern(pattern), _) => pattern.bytes_beyond(None),
+            (Self::Draft(draft), _) => draft.bytes(),
+            (Self::Weave(filled), _) => filled.fill.pattern.bytes_beyond(None),
+            (Self::Regions(regions), Some(Self::Regions(other))) => {
+                regions.bytes_beyond(Some(other))
+            }
+            (Self::Regions(regions), _) => regions.bytes_beyond(None),
+        }
+    }
+
     /// The drawdown.
     pub fn weave(&self) -> WeavePattern {
         match self {
@@ -438,7 +503,7 @@ mod tests {
         let usual = YarnMaps::plain(YarnId(0), YarnId(1));
         assert_eq!(regions.yarn_maps(&usual).unwrap(), usual);
         let (warp, weft) = (YarnId(2), YarnId(3));
-        regions.palette[1].yarns = Some(RegionYarns { warp, weft });
+        Arc::make_mut(&mut regions.palette)[1].yarns = Some(RegionYarns { warp, weft });
         let maps = regions.yarn_maps(&usual).unwrap();
         assert!(!maps.weavable());
         assert_eq!((maps.warp(3, 1), maps.weft(3, 1)), (YarnId(0), YarnId(1)));

@@ -79,10 +79,30 @@ impl ExemplarStore {
         needed: &[bool],
         job: &Job,
     ) -> Result<Arc<ExemplarSet>, ExemplarError> {
-        let mut set = ExemplarSet::new(catalogue, pair, grid)?;
+        let set = ExemplarSet::new(catalogue, pair, grid)?;
+        Ok(self.complete(catalogue, &Arc::new(set), needed, job)?)
+    }
+
+    /// The same set with those of the `needed` exemplars that it lacks, read or built as
+    /// by [`ExemplarStore::get`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the job was.
+    pub fn complete(
+        &self,
+        catalogue: &Catalogue,
+        set: &Arc<ExemplarSet>,
+        needed: &[bool],
+        job: &Job,
+    ) -> Result<Arc<ExemplarSet>, Cancelled> {
         let list: Vec<usize> = (0..catalogue.exemplars())
             .filter(|&exemplar| needed.get(exemplar).copied().unwrap_or(false))
+            .filter(|&exemplar| set.volumes[exemplar].is_none())
             .collect();
+        if list.is_empty() {
+            return Ok(Arc::clone(set));
+        }
+        let (pair, grid) = (&set.pair, set.grid);
         let done = AtomicUsize::new(0);
         let volumes = list
             .par_iter()
@@ -93,6 +113,7 @@ impl ExemplarStore {
                 Ok(volume)
             })
             .collect::<Result<Vec<_>, Cancelled>>()?;
+        let mut set = ExemplarSet::clone(set);
         for (exemplar, volume) in list.into_iter().zip(volumes) {
             set.put(catalogue, exemplar, Arc::new(volume));
         }

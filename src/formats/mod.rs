@@ -14,6 +14,7 @@ pub mod dtx;
 pub mod exr;
 pub mod image;
 pub mod jc5;
+pub mod pdf;
 pub mod photo;
 pub mod png;
 pub mod presets;

@@ -3,6 +3,8 @@
 //! Each reader fills in a [`Sheet`]; the rules by which yarns, sett and name are made of it
 //! are here and in `wif::threads`, once for all formats.
 
+use std::sync::Arc;
+
 use std::fmt;
 
 use super::wif::threads::{self, Spacing, Threads};
@@ -197,7 +199,7 @@ impl Sheet<'_> {
         let mut design = Design::new(title, self.structure, yarns, maps, sett)
             .map_err(|error| misfit("correct the draft")(error.to_string()))?;
         design.notes = self.notes;
-        design.origin = Origin {
+        design.origin = Arc::new(Origin {
             program: self.program.filter(|program| !program.is_empty()),
             first_end: self.first_end,
             first_pick: self.first_pick,
@@ -205,7 +207,7 @@ impl Sheet<'_> {
             ends: self.warp.stated(),
             picks: self.weft.stated(),
             palette: self.palette,
-        };
+        });
         Ok(Imported {
             design,
             warnings: warnings.finish(),

@@ -152,6 +152,25 @@ impl LightRig {
         Self::from_ron(name, text)
     }
 
+    /// The default rig with its sun elsewhere: `azimuth` and `elevation` in degrees, as
+    /// in [`SunSpec`]; a sun below 3° stands at 3°.
+    ///
+    /// # Errors
+    /// When the default preset is not usable.
+    pub fn sun(azimuth: i16, elevation: i16) -> Result<Self, LightError> {
+        let name = PRESET_NAMES[0];
+        let text = preset_text(name).ok_or_else(|| LightError::Unknown(name.to_owned()))?;
+        let mut spec: LightSpec = ron::from_str(text).map_err(|error| LightError::Parse {
+            name: name.to_owned(),
+            reason: error.to_string(),
+        })?;
+        for sun in &mut spec.suns {
+            sun.azimuth = f32::from(azimuth);
+            sun.elevation = f32::from(elevation.clamp(3, 90));
+        }
+        Self::from_spec("sun where it was put", &spec)
+    }
+
     /// A rig from the text of its RON file.
     pub fn from_ron(name: &str, text: &str) -> Result<Self, LightError> {
         let spec: LightSpec = ron::from_str(text).map_err(|error| LightError::Parse {

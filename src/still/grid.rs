@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::picture::{Pass, Shot, Still, camera_at, lights, settings};
+use super::picture::{Pass, Shot, Still, Subject, camera_at, lights, settings};
 use super::{StillError, StillRequest};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
@@ -43,9 +43,9 @@ pub fn render_grid(
     };
     let outcome = shot.expose(&file.grid, job, on_pass)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let about = (name.into_owned(), "a volume".to_owned());
+    let subject = Subject::Volume(name.into_owned());
     Ok((
-        shot.develop(outcome, vec![reading], effects, about),
+        shot.develop(outcome, vec![reading], effects, subject),
         file.warnings,
     ))
 }

@@ -7,15 +7,23 @@
 //! [`render_grid`] takes a picture of a volume that was read.
 
 mod effects;
+mod engine;
+mod first_sight;
 mod grid;
 mod picture;
+mod prepare;
 mod request;
 mod sheet;
 
 pub use effects::{DIALS, DialError, EFFECTS};
+pub use engine::Engine;
+pub use first_sight::{FirstSight, SightTables};
 pub use grid::{render_grid, scene_files};
-pub use picture::{Pass, PreparedCloth, Still, prepare, render, render_still, usual_width_mm};
-pub use request::{EffectBase, EffectChoice, LightChoice, StillReport, StillRequest, Stop};
+pub use picture::{Pass, Still, render, render_still, usual_width_mm};
+pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};
+pub use request::{
+    EffectBase, EffectChoice, Heading, LightChoice, StillReport, StillRequest, Stop,
+};
 pub use sheet::{AS_DESIGNED, Sheet, SheetPlace, render_sheet};
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Making the cloth of a design and its picture.
+//! The picture of a prepared cloth, pass by pass.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 
+use super::prepare::{PreparedCloth, prepare};
 use super::request::{LightChoice, StillReport, StillRequest};
 use super::{StillError, effects};
-use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
-use crate::design::{Design, Yarn};
+use crate::cloth::ClothSettings;
+use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
@@ -17,9 +18,9 @@ use crate::render::{
     self, Both, Camera, Denoise, Film, LightRig, RenderOutcome, RenderSettings, Scatterer, Tone,
     View,
 };
-use crate::synthesis::Catalogue;
-use crate::yarn::YarnRecipe;
 
+/// Degrees across the picture where the eye has a direction of its own.
+const FIELD_OF_VIEW: f32 = 30.0;
 /// Samples a pixel when a request gives no way to stop.
 const USUAL_SPP: u32 = 64;
 
@@ -34,64 +35,6 @@ pub fn usual_width_mm(view: View, design: &Design) -> f32 {
         View::Close => pitch * 9.0,
         View::Oblique | View::Grazing => pitch * 24.0,
         View::Face | View::Back => (pitch * design.ends() as f32).clamp(pitch * 24.0, pitch * 72.0),
-    }
-}
-
-/// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
-pub struct PreparedCloth {
-    design: Arc<Design>,
-    cloth: ClothVolume,
-    seconds: Vec<(String, f64)>,
-    effects: SwitchedEffects,
-}
-
-impl PreparedCloth {
-    /// Whether an effect is simulated.
-    fn on(&self, name: &str) -> bool {
-        self.effects
-            .iter()
-            .any(|(effect, on)| effect == name && *on)
-    }
-
-    /// Whether each yarn has hairs.
-    fn hairy(&self) -> Vec<bool> {
-        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
-        self.design
-            .yarns()
-            .iter()
-            .map(|yarn| hairs(yarn) >= 0.5)
-            .collect()
-    }
-
-    /// The cloth.
-    pub fn cloth(&self) -> &ClothVolume {
-        &self.cloth
-    }
-
-    /// Puts the cloth into the yarns of `design`, the same design in another colourway,
-    /// without making anything anew. False, and nothing changed, where a yarn has another
-    /// family or size: then [`prepare`] it.
-    pub fn recolour(&mut self, design: &Arc<Design>) -> bool {
-        let alike = self.cloth.recolour_as(design);
-        if alike {
-            self.design = Arc::clone(design);
-            self.seconds.clear();
-        }
-        alike
-    }
-}
-
-/// The design in the colourway that a request names.
-///
-/// # Errors
-/// When it has no such colourway.
-pub(super) fn coloured(
-    design: &Arc<Design>,
-    request: &StillRequest,
-) -> Result<Arc<Design>, StillError> {
-    match &request.colourway {
-        None => Ok(Arc::clone(design)),
-        Some(name) => Ok(Arc::new(Design::clone(design).with_colourway(name)?)),
     }
 }
 
@@ -138,51 +81,10 @@ pub(super) fn settings(
     Ok((cloth, render, on))
 }
 
-/// Builds what every picture of a design needs; `request` gives the dials, the seed and
-/// the colourway.
-///
-/// # Errors
-/// When the design cannot be made into cloth, a dial is wrong, or the job is cancelled.
-pub fn prepare(
-    design: &Arc<Design>,
-    request: &StillRequest,
-    store: &ExemplarStore,
-    job: &Job,
-) -> Result<PreparedCloth, StillError> {
-    let (settings, _, effects) = settings(request)?;
-    let design = &coloured(design, request)?;
-    let begun = Instant::now();
-    let catalogue = Arc::new(Catalogue::standard());
-    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &settings, job)?;
-    let assigning = begun.elapsed().as_secs_f64();
-    let begun = Instant::now();
-    let classes = YarnClasses::new(design);
-    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).map_err(ClothError::from)?;
-    let sets = (classes.pairs.iter())
-        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(ClothError::from)?;
-    let exemplars = begun.elapsed().as_secs_f64();
-    let begun = Instant::now();
-    let albedo: Vec<Vec3> = design.yarns().iter().map(colour::albedo).collect();
-    let cloth = ClothVolume::new(
-        design, catalogue, classes, assignment, sets, albedo, settings, job,
-    )?;
-    let synthesis = assigning + begun.elapsed().as_secs_f64();
-    Ok(PreparedCloth {
-        design: Arc::clone(design),
-        cloth,
-        seconds: vec![
-            ("exemplars".to_owned(), exemplars),
-            ("synthesis".to_owned(), synthesis),
-        ],
-        effects,
-    })
-}
-
 pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
     let rig = match choice {
         LightChoice::Preset(name) => LightRig::preset(name)?,
+        LightChoice::Sun(heading) => LightRig::sun(heading.azimuth, heading.elevation)?,
         LightChoice::Environment(path) => {
             LightRig::from_image(&path.display().to_string(), exr::read_environment(path)?)?
         }
@@ -194,7 +96,7 @@ pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, Still
     })
 }
 
-fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
+pub(super) fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
     let [x, y] = [
         design.end_positions().repeat_mm(),
         design.pick_positions().repeat_mm(),
@@ -221,7 +123,26 @@ pub(super) fn camera_at(
     }
     let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
     let target = Vec3::new(x, y, middle.z);
-    Ok(request.view.camera(target, width_mm, width, height))
+    Ok(match request.eye {
+        None => request.view.camera(target, width_mm, width, height),
+        Some(heading) => {
+            let from = heading.towards();
+            // The back is seen after turning the cloth over about its y axis.
+            let from = match request.view.turns_over() {
+                true => Vec3::new(-from.x, from.y, -from.z),
+                false => from,
+            };
+            Camera::perspective(
+                target,
+                from,
+                Vec3::Y,
+                FIELD_OF_VIEW,
+                width_mm,
+                width,
+                height,
+            )
+        }
+    })
 }
 
 /// Renders one picture; `on_pass` sees it after every pass.
@@ -241,12 +162,9 @@ pub fn render(
         settings,
         request,
     };
-    let (x, y) = in_view(&shot.camera, request.view);
-    let cloth = prepared.cloth.clone().with_window(x, y);
-    let hairs = prepared
-        .on("hairs")
-        .then(|| HairLayer::new(&cloth, prepared.hairy()))
-        .flatten();
+    let (x, y) = in_view(&shot.camera, request);
+    let cloth = prepared.cloth().clone().with_window(x, y);
+    let hairs = prepared.hair_layer(&cloth);
     let outcome = match &hairs {
         Some(hairs) => shot.expose(&Both(&cloth, hairs), job, on_pass)?,
         None => shot.expose(&cloth, job, on_pass)?,
@@ -255,7 +173,7 @@ pub fn render(
         outcome,
         prepared.seconds.clone(),
         prepared.effects.clone(),
-        (prepared.design.name.clone(), design_hash(&prepared.design)),
+        Subject::Design(Arc::clone(&prepared.design)),
     ))
 }
 
@@ -330,14 +248,13 @@ impl Shot<'_> {
         }
     }
 
-    /// The still of a film: `seconds` before rendering, and the title and hash of what it
-    /// shows.
+    /// The still of a film: `seconds` before rendering, and what it shows.
     pub fn develop(
         &self,
         outcome: RenderOutcome,
         mut seconds: Vec<(String, f64)>,
         effects: SwitchedEffects,
-        (title, hash): (String, String),
+        subject: Subject,
     ) -> Still {
         let request = self.request;
         seconds.push(("render".to_owned(), outcome.seconds));
@@ -356,13 +273,6 @@ impl Shot<'_> {
             majorant_violations: outcome.counters.majorant_violations,
             effects,
         };
-        let software = format!("Pickglass {}", env!("CARGO_PKG_VERSION"));
-        let texts = [
-            ("Software", software),
-            ("Title", title),
-            ("Design", hash),
-            ("Settings", format!("{request:?}")),
-        ];
         Still {
             report,
             film: outcome.film,
@@ -370,18 +280,23 @@ impl Shot<'_> {
             denoise: effects::denoises(&request.dials),
             depth: effects::png_depth(&request.dials),
             pixels_per_mm: self.camera.pixels_per_mm(),
-            texts: texts.map(|(key, text)| (key.to_owned(), text)).to_vec(),
+            subject,
+            settings: format!("{request:?}"),
         }
     }
 }
 
 /// The stretch of cloth that a camera sees most of, mm in x and y.
-fn in_view(camera: &Camera, view: View) -> (std::ops::Range<f32>, std::ops::Range<f32>) {
+fn in_view(
+    camera: &Camera,
+    request: &StillRequest,
+) -> (std::ops::Range<f32>, std::ops::Range<f32>) {
     // A slanting view reaches further.
-    let reach = match view {
-        View::Face | View::Back | View::Close => 0.6,
-        View::Oblique => 1.2,
-        View::Grazing => 2.5,
+    let reach = match (request.eye, request.view) {
+        (Some(eye), _) => (0.8 / eye.towards().z).min(2.5),
+        (None, View::Face | View::Back | View::Close) => 0.6,
+        (None, View::Oblique) => 1.2,
+        (None, View::Grazing) => 2.5,
     };
     let target = camera.target();
     let across = reach * camera.width() as f32 / camera.pixels_per_mm();
@@ -410,7 +325,7 @@ fn known(error: f64) -> Option<f64> {
     error.is_finite().then_some(error)
 }
 
-fn byte(value: f32) -> u8 {
+pub(super) fn byte(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
@@ -432,7 +347,16 @@ pub struct Still {
     denoise: bool,
     depth: png::Depth,
     pub(super) pixels_per_mm: f32,
-    pub(super) texts: Vec<(String, String)>,
+    subject: Subject,
+    settings: String,
+}
+
+/// What a still shows.
+pub(super) enum Subject {
+    /// A design's cloth.
+    Design(Arc<Design>),
+    /// A volume that was read, by its name.
+    Volume(String),
 }
 
 impl Still {
@@ -446,6 +370,26 @@ impl Still {
         }
     }
 
+    /// What the picture's file says of it.
+    pub(super) fn texts(&self) -> Vec<(String, String)> {
+        // The hash is of the whole document: it is worked out for pictures that are kept.
+        let (title, hash) = match &self.subject {
+            Subject::Design(design) => (design.name.clone(), design_hash(design)),
+            Subject::Volume(name) => (name.clone(), "a volume".to_owned()),
+        };
+        [
+            (
+                "Software",
+                format!("Pickglass {}", env!("CARGO_PKG_VERSION")),
+            ),
+            ("Title", title),
+            ("Design", hash),
+            ("Settings", self.settings.clone()),
+        ]
+        .map(|(key, text)| (key.to_owned(), text))
+        .to_vec()
+    }
+
     /// Writes `.png` or `.exr`, replacing the file in one step.
     ///
     /// # Errors
@@ -455,12 +399,12 @@ impl Still {
             Some(ending) if ending.eq_ignore_ascii_case("png") => {
                 let metadata = png::Metadata {
                     pixels_per_mm: Some(self.pixels_per_mm),
-                    texts: self.texts.clone(),
+                    texts: self.texts(),
                 };
                 png::write(path, &self.picture(), self.depth, &metadata)?;
             }
             Some(ending) if ending.eq_ignore_ascii_case("exr") => {
-                exr::write(path, &self.film, self.pixels_per_mm, &self.texts)?;
+                exr::write(path, &self.film, self.pixels_per_mm, &self.texts())?;
             }
             _ => return Err(StillError::Ending(path.to_owned())),
         }

@@ -11,6 +11,31 @@ pub enum LightChoice {
     Preset(String),
     /// An equirectangular `.exr`.
     Environment(PathBuf),
+    /// A sun from a direction that the person points out, under a soft sky.
+    Sun(Heading),
+}
+
+/// A direction over the side of the cloth that is looked at, in whole degrees.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Heading {
+    /// From the right of the picture counter-clockwise: 90 = top, 180 = left.
+    pub azimuth: i16,
+    /// Above the cloth.
+    pub elevation: i16,
+}
+
+impl Heading {
+    /// The direction, z out of the side that is looked at, at least a degree above it.
+    pub fn towards(self) -> glam::Vec3 {
+        let (sine, cosine) = f32::from(self.elevation.clamp(1, 90))
+            .to_radians()
+            .sin_cos();
+        let (across, along) = {
+            let (sine, cosine) = f32::from(self.azimuth).to_radians().sin_cos();
+            (cosine, sine)
+        };
+        glam::Vec3::new(cosine * across, cosine * along, sine)
+    }
 }
 
 impl Default for LightChoice {
@@ -60,6 +85,9 @@ pub struct StillRequest {
     pub height: u32,
     /// From where.
     pub view: View,
+    /// The eye's own direction instead of the view's: from there the same side is seen in
+    /// perspective.
+    pub eye: Option<Heading>,
     /// Width of cloth the picture shows, mm; `None` = the view's own.
     pub width_mm: Option<f32>,
     /// The point of the cloth in the picture's middle, mm; `None` = the design's middle.
@@ -88,6 +116,7 @@ impl Default for StillRequest {
             width: 1280,
             height: 960,
             view: View::Face,
+            eye: None,
             width_mm: None,
             centre_mm: None,
             light: LightChoice::default(),

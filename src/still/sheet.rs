@@ -6,7 +6,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::picture::{Pass, PreparedCloth, Still, prepare, render};
+use super::picture::{Pass, Still, render};
+use super::prepare::{PreparedCloth, prepare};
 use super::request::{StillReport, StillRequest};
 use super::{StillError, png_ending};
 use crate::design::Design;
@@ -165,7 +166,7 @@ pub fn render_sheet(
         join(&mut report, &still, index == 0);
         if index == 0 {
             metadata.pixels_per_mm = Some(still.pixels_per_mm);
-            metadata.texts = still.texts;
+            metadata.texts = still.texts();
         }
         places.push(SheetPlace {
             name,

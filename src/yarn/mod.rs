@@ -13,8 +13,10 @@ pub mod fibre;
 mod geometry;
 mod noise;
 mod recipe;
+mod section;
 pub mod tubes;
 
 pub use geometry::{Direction, WeaveGeometry, YarnPath};
 pub use noise::{hash, unit};
 pub use recipe::{RecipeError, YarnRecipe};
+pub use section::{CrossSection, CutThread, MOST_CROSSINGS, cross_section};

@@ -1,24 +1,118 @@
-//! Everything one can do in the window, once: menus, shortcuts, the help sheet and the
-//! README's table are made from this list.
+//! Everything one can do in the window, once: menus, shortcuts, tooltips, the palette, the
+//! help sheet and the README's table are made from this list.
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 use pickglass::render::View;
 
+/// How a loom's parts are laid round the drawdown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum DraftLayout {
+    /// Threading above, ends counted from the right.
+    #[default]
+    Us,
+    /// Threading below, ends counted from the left.
+    Scandinavian,
+    /// The drawdown alone.
+    Jacquard,
+}
+
+/// What the pointer does on the draft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Tool {
+    #[default]
+    Pencil,
+    Line,
+    Rectangle,
+    Fill,
+    Replace,
+    Picker,
+    Select,
+    Move,
+    Stamp,
+}
+
+impl Tool {
+    /// All tools, in the order of the palette.
+    pub const ALL: [Self; 9] = [
+        Self::Pencil,
+        Self::Line,
+        Self::Rectangle,
+        Self::Fill,
+        Self::Replace,
+        Self::Picker,
+        Self::Select,
+        Self::Move,
+        Self::Stamp,
+    ];
+}
+
+/// A direction on the cloth as it is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Toward {
+    Left,
+    Right,
+    Up,
+    Down,
+}
+
 /// Something one can do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
+    New,
     Open,
     OpenPath,
-    Export,
+    Start,
+    Save,
+    SaveAs,
+    ExportStill,
+    ExportVolume,
+    ExportDraft,
+    Print,
     Quit,
+    Undo,
+    Redo,
+    Cut,
+    Copy,
+    Paste,
+    SelectAll,
+    Deselect,
+    Clear,
+    FillSelection,
+    StampWeave,
+    Invert,
+    MirrorAcross,
+    MirrorAlong,
+    TurnHalf,
+    TurnQuarter,
+    Roll(Toward),
+    Resize,
+    Repeat,
+    Loom,
+    Words,
+    CropToSelection,
+    Repeat2,
+    SymmetryAcross,
+    SymmetryAlong,
+    DeriveDraft,
+    BecomeJacquard,
+    Arrange(DraftLayout),
+    Use(Tool),
+    SwapColours,
     Look(View),
     Fit,
     ActualSize,
     ZoomIn,
     ZoomOut,
-    Strip,
+    Structure,
+    GridLines,
+    LongFloats,
+    Ghosts,
+    Navigator,
     Pause,
     Theme,
+    NextPane,
+    ResetLayout,
+    Palette,
     Shortcuts,
 }
 
@@ -26,8 +120,35 @@ pub enum Command {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Menu {
     File,
+    Edit,
+    Weave,
+    Tools,
     View,
     Help,
+}
+
+impl Menu {
+    /// All menus, from the left.
+    pub const ALL: [Self; 6] = [
+        Self::File,
+        Self::Edit,
+        Self::Weave,
+        Self::Tools,
+        Self::View,
+        Self::Help,
+    ];
+
+    /// What the menu bar says.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::Weave => "Weave",
+            Self::Tools => "Tools",
+            Self::View => "View",
+            Self::Help => "Help",
+        }
+    }
 }
 
 /// One row of the table.
@@ -37,15 +158,34 @@ pub struct Row {
     pub menu: Menu,
     pub label: &'static str,
     pub tip: &'static str,
-    pub shortcut: Option<KeyboardShortcut>,
+    /// Any of these; the first is shown.
+    pub shortcuts: &'static [KeyboardShortcut],
+    /// A line is drawn above it in its menu.
+    pub apart: bool,
 }
 
-const fn ctrl(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
+const fn with(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(modifiers, key)
 }
 
-const fn plain(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::NONE, key))
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    with(Modifiers::COMMAND, key)
+}
+
+const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    with(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+const fn alt(key: Key) -> KeyboardShortcut {
+    with(Modifiers::ALT, key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    with(Modifiers::SHIFT, key)
+}
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    with(Modifiers::NONE, key)
 }
 
 const fn row(
@@ -53,38 +193,137 @@ const fn row(
     menu: Menu,
     label: &'static str,
     tip: &'static str,
-    shortcut: Option<KeyboardShortcut>,
+    shortcuts: &'static [KeyboardShortcut],
 ) -> Row {
     Row {
         command,
         menu,
         label,
         tip,
-        shortcut,
+        shortcuts,
+        apart: false,
     }
+}
+
+const fn apart(mut row: Row) -> Row {
+    row.apart = true;
+    row
 }
 
 /// The table, in the order of the menus.
 #[rustfmt::skip]
 pub const TABLE: &[Row] = &[
-    row(Command::Open, Menu::File, "Open…", "Open a design or a draft", ctrl(Key::O)),
-    row(Command::OpenPath, Menu::File, "Open by path…", "Type or paste the path of a file", ctrl(Key::L)),
-    row(Command::Export, Menu::File, "Export still…", "Render the cloth as shown into a file", ctrl(Key::E)),
-    row(Command::Quit, Menu::File, "Quit", "Close the window", ctrl(Key::Q)),
-    row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face, to true scale", ctrl(Key::Num1)),
-    row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", ctrl(Key::Num2)),
-    row(Command::Look(View::Close), Menu::View, "Close", "A few threads, as under a hand lens", ctrl(Key::Num3)),
-    row(Command::Look(View::Oblique), Menu::View, "Oblique", "From the lower edge, 45° above the cloth", ctrl(Key::Num4)),
-    row(Command::Look(View::Grazing), Menu::View, "Grazing", "From the lower edge, 18° above the cloth", ctrl(Key::Num5)),
-    row(Command::Fit, Menu::View, "Fit the design", "Show one repeat of the whole design", plain(Key::F)),
-    row(Command::ActualSize, Menu::View, "Actual size", "1 cm of cloth is about 1 cm of screen", plain(Key::Num1)),
-    row(Command::ZoomIn, Menu::View, "Zoom in", "Look closer", plain(Key::Plus)),
-    row(Command::ZoomOut, Menu::View, "Zoom out", "Look from further away", plain(Key::Minus)),
-    row(Command::Strip, Menu::View, "Drawdown and yarns", "Show or hide the strip beside the cloth", plain(Key::D)),
-    row(Command::Pause, Menu::View, "Pause refining", "Stop and resume the refining of the picture", plain(Key::P)),
-    row(Command::Theme, Menu::View, "Light or dark", "Change between the light and the dark theme", plain(Key::T)),
-    row(Command::Shortcuts, Menu::Help, "Keyboard shortcuts", "Show this table", plain(Key::F1)),
+    row(Command::New, Menu::File, "New", "A plain weave to start from", &[ctrl(Key::N)]),
+    row(Command::Open, Menu::File, "Open…", "Open a design, a draft or an image", &[ctrl(Key::O)]),
+    row(Command::OpenPath, Menu::File, "Open by path…", "Type or paste the path of a file", &[ctrl(Key::L)]),
+    row(Command::Start, Menu::File, "Start page", "Presets, recent files and what can be recovered", &[]),
+    apart(row(Command::Save, Menu::File, "Save", "Write the design to its file", &[ctrl(Key::S)])),
+    row(Command::SaveAs, Menu::File, "Save as…", "Write the design to another file", &[ctrl_shift(Key::S)]),
+    apart(row(Command::ExportStill, Menu::File, "Export still…", "Render the cloth as shown into a file", &[ctrl(Key::E)])),
+    row(Command::ExportVolume, Menu::File, "Export volume…", "The selected crossings as voxels; says the bytes first", &[]),
+    row(Command::ExportDraft, Menu::File, "Export draft…", "Write a WIF or a loom image; says what has no place in it", &[ctrl_shift(Key::E)]),
+    row(Command::Print, Menu::File, "Print to PDF…", "Draft with its numbers, yarns, heddles, and the cloth at true size", &[ctrl(Key::P)]),
+    apart(row(Command::Quit, Menu::File, "Quit", "Close the window", &[ctrl(Key::Q)])),
+
+    row(Command::Undo, Menu::Edit, "Undo", "Take back the last change", &[ctrl(Key::Z), plain(Key::Z)]),
+    row(Command::Redo, Menu::Edit, "Redo", "Make the change again", &[ctrl_shift(Key::Z), ctrl(Key::Y), shift(Key::Z)]),
+    apart(row(Command::Cut, Menu::Edit, "Cut", "Copy the selection and leave weft up there", &[ctrl(Key::X)])),
+    row(Command::Copy, Menu::Edit, "Copy", "Copy the selected crossings", &[ctrl(Key::C)]),
+    row(Command::Paste, Menu::Edit, "Paste", "Stamp what was copied; click to place it", &[ctrl(Key::V)]),
+    row(Command::Clear, Menu::Edit, "Clear", "Weft up in the whole selection", &[plain(Key::Delete)]),
+    apart(row(Command::StampWeave, Menu::Edit, "Stamp a weave…", "Take a weave by its notation, or from the library, as the stamp", &[ctrl(Key::B)])),
+    row(Command::FillSelection, Menu::Edit, "Fill with the stamp", "The selection is filled with what was copied, repeated", &[ctrl(Key::F)]),
+    apart(row(Command::SelectAll, Menu::Edit, "Select all", "Select one whole repeat", &[ctrl(Key::A)])),
+    row(Command::Deselect, Menu::Edit, "Select nothing", "Forget the selection", &[ctrl_shift(Key::A)]),
+
+    row(Command::Invert, Menu::Weave, "Invert", "Exchange warp up and weft up", &[ctrl(Key::I)]),
+    row(Command::MirrorAcross, Menu::Weave, "Mirror left and right", "Z twill becomes S", &[ctrl(Key::H)]),
+    row(Command::MirrorAlong, Menu::Weave, "Mirror top and bottom", "Z twill becomes S", &[ctrl_shift(Key::H)]),
+    row(Command::TurnHalf, Menu::Weave, "Turn by half", "Turn by 180°; twills keep their hand", &[]),
+    row(Command::TurnQuarter, Menu::Weave, "Turn by a quarter", "Turn by 90°; ends become picks", &[]),
+    apart(row(Command::Roll(Toward::Left), Menu::Weave, "Roll left", "Move the repeat by one end, round the edge", &[alt(Key::ArrowLeft)])),
+    row(Command::Roll(Toward::Right), Menu::Weave, "Roll right", "Move the repeat by one end, round the edge", &[alt(Key::ArrowRight)]),
+    row(Command::Roll(Toward::Up), Menu::Weave, "Roll up", "Move the repeat by one pick, round the edge", &[alt(Key::ArrowUp)]),
+    row(Command::Roll(Toward::Down), Menu::Weave, "Roll down", "Move the repeat by one pick, round the edge", &[alt(Key::ArrowDown)]),
+    apart(row(Command::Resize, Menu::Weave, "Resize…", "Another number of ends and picks: cut off, or repeated to fill", &[])),
+    row(Command::Repeat, Menu::Weave, "Repeat…", "Straight, shifted like bricks, or not at all", &[]),
+    row(Command::CropToSelection, Menu::Weave, "Crop to the selection", "Keep the selected crossings alone", &[]),
+    row(Command::Repeat2, Menu::Weave, "Repeat 2 × 2", "Four repeats become one, so that they can differ", &[]),
+    apart(row(Command::DeriveDraft, Menu::Weave, "Derive the draft", "Threading, tie-up and treadling on the fewest shafts", &[])),
+    row(Command::Loom, Menu::Weave, "Loom…", "Shafts and treadles, lift plan, rising or sinking shed", &[]),
+    row(Command::BecomeJacquard, Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])
+    ,
+    apart(row(Command::Words, Menu::Weave, "Name and notes…", "What the design is called, and what to remember", &[])),
+    apart(row(Command::Arrange(DraftLayout::Us), Menu::Weave, "US layout", "Threading above, ends counted from the right", &[])),
+    row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below, ends counted from the left", &[]),
+    row(Command::Arrange(DraftLayout::Jacquard), Menu::Weave, "Drawdown alone", "Neither threading nor treadling", &[]),
+
+    row(Command::Use(Tool::Pencil), Menu::Tools, "Pencil", "Paint crossings; the right button paints the other value", &[plain(Key::P)]),
+    row(Command::Use(Tool::Line), Menu::Tools, "Line", "A straight line of crossings", &[plain(Key::L)]),
+    row(Command::Use(Tool::Rectangle), Menu::Tools, "Rectangle", "A filled rectangle; Shift draws the outline", &[plain(Key::R)]),
+    row(Command::Use(Tool::Fill), Menu::Tools, "Fill", "Fill an area of equal crossings, round the repeat", &[plain(Key::G)]),
+    row(Command::Use(Tool::Replace), Menu::Tools, "Replace", "Every equal crossing or yarn, wherever it is", &[plain(Key::E)]),
+    row(Command::Use(Tool::Picker), Menu::Tools, "Picker", "Take the yarn or region under the pointer", &[plain(Key::I)]),
+    row(Command::Use(Tool::Select), Menu::Tools, "Select", "Select a rectangle of crossings", &[plain(Key::S)]),
+    row(Command::Use(Tool::Move), Menu::Tools, "Move", "Move the selected crossings", &[plain(Key::M)]),
+    row(Command::Use(Tool::Stamp), Menu::Tools, "Stamp", "Stamp what was copied", &[plain(Key::B)]),
+    apart(row(Command::SwapColours, Menu::Tools, "Exchange the paint", "Exchange what the first and the second button paint", &[plain(Key::X)])),
+    row(Command::SymmetryAcross, Menu::Tools, "Paint mirrored left and right", "What is painted left is painted right as well", &[]),
+    row(Command::SymmetryAlong, Menu::Tools, "Paint mirrored top and bottom", "What is painted above is painted below as well", &[]),
+
+    row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face, to true scale", &[ctrl(Key::Num1)]),
+    row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", &[ctrl(Key::Num2)]),
+    row(Command::Look(View::Close), Menu::View, "Close", "A few threads, as under a hand lens", &[ctrl(Key::Num3)]),
+    row(Command::Look(View::Oblique), Menu::View, "Oblique", "From the lower edge, 45° above the cloth", &[ctrl(Key::Num4)]),
+    row(Command::Look(View::Grazing), Menu::View, "Grazing", "From the lower edge, 18° above the cloth", &[ctrl(Key::Num5)]),
+    apart(row(Command::Fit, Menu::View, "Fit the design", "Show one repeat of the whole design", &[plain(Key::F)])),
+    row(Command::ActualSize, Menu::View, "Actual size", "Cloth at its true size; in the draft a point a crossing", &[plain(Key::Num1)]),
+    row(Command::ZoomIn, Menu::View, "Zoom in", "Look closer", &[plain(Key::Plus), plain(Key::Equals)]),
+    row(Command::ZoomOut, Menu::View, "Zoom out", "Look from further away", &[plain(Key::Minus)]),
+    apart(row(Command::Structure, Menu::View, "Structure alone", "Warp up black and weft up white, or the colours of the yarns", &[plain(Key::C)])),
+    row(Command::GridLines, Menu::View, "Grid lines", "Lines between the crossings", &[plain(Key::H)]),
+    row(Command::LongFloats, Menu::View, "Long floats", "Mark floats longer than the limit", &[plain(Key::O)]),
+    row(Command::Ghosts, Menu::View, "Ghost repeats", "Show faded how the design goes on", &[]),
+    row(Command::Navigator, Menu::View, "Navigator", "Three by three repeats, small", &[plain(Key::N)]),
+    apart(row(Command::Pause, Menu::View, "Pause refining", "Stop and resume the refining of the picture", &[shift(Key::P)])),
+    row(Command::NextPane, Menu::View, "Draft or cloth", "Exchange the keyboard between draft and cloth", &[plain(Key::F6)]),
+    row(Command::Theme, Menu::View, "Light or dark", "Change between the light and the dark theme", &[ctrl(Key::T)]),
+    row(Command::ResetLayout, Menu::View, "Reset layout", "Put all panes back to their usual places", &[]),
+
+    row(Command::Palette, Menu::Help, "Find a command…", "Type a few letters of what you want to do", &[ctrl(Key::K)]),
+    row(Command::Shortcuts, Menu::Help, "Keyboard shortcuts", "Show this table", &[plain(Key::F1)]),
 ];
+
+/// The row of a command.
+pub fn row_of(command: Command) -> Option<&'static Row> {
+    TABLE.iter().find(|row| row.command == command)
+}
+
+/// How well a row answers what was typed: `None` = not at all, smaller = better.
+///
+/// The letters must occur in this order in label or tip; a label that holds the words as
+/// they stand comes first.
+pub fn match_rank(row: &Row, typed: &str) -> Option<usize> {
+    let typed = typed.trim().to_lowercase();
+    let (label, tip) = (row.label.to_lowercase(), row.tip.to_lowercase());
+    if let Some(place) = label.find(&typed) {
+        return Some(place);
+    }
+    if let Some(spread) = spread(&label, &typed) {
+        return Some(100 + spread);
+    }
+    tip.find(&typed).map(|place| 1000 + place)
+}
+
+/// How many letters lie between the typed ones, if they all occur in order.
+fn spread(text: &str, typed: &str) -> Option<usize> {
+    let mut letters = text.chars();
+    let mut skipped = 0;
+    for wanted in typed.chars().filter(|letter| !letter.is_whitespace()) {
+        skipped += letters.by_ref().position(|letter| letter == wanted)?;
+    }
+    Some(skipped)
+}
 
 /// The table as Markdown, for the README.
 #[cfg(test)]
@@ -92,13 +331,12 @@ pub fn markdown() -> String {
     let names = egui::ModifierNames::NAMES;
     let mut text = String::from("| key | does |\n|---|---|\n");
     for row in TABLE {
-        if let Some(shortcut) = row.shortcut {
-            let key = shortcut.format(&names, false);
-            text += &format!(
-                "| `{key}` | {}: {} |\n",
-                row.label.trim_end_matches('…'),
-                row.tip
-            );
+        let keys: Vec<_> = (row.shortcuts.iter())
+            .map(|shortcut| format!("`{}`", shortcut.format(&names, false)))
+            .collect();
+        if !keys.is_empty() {
+            let label = row.label.trim_end_matches('…');
+            text += &format!("| {} | {label}: {} |\n", keys.join(" "), row.tip);
         }
     }
     text
@@ -114,11 +352,9 @@ mod tests {
             for b in &TABLE[index + 1..] {
                 assert_ne!(a.label, b.label);
                 assert_ne!(a.command, b.command);
-                assert!(
-                    a.shortcut.is_none() || a.shortcut != b.shortcut,
-                    "{}",
-                    a.label
-                );
+                for shortcut in a.shortcuts {
+                    assert!(!b.shortcuts.contains(shortcut), "{} {}", a.label, b.label);
+                }
             }
         }
     }
@@ -134,9 +370,27 @@ mod tests {
     }
 
     #[test]
-    fn every_view_has_a_command() {
+    fn every_view_tool_and_layout_has_a_command() {
         for view in View::ALL {
-            assert!(TABLE.iter().any(|row| row.command == Command::Look(view)));
+            assert!(row_of(Command::Look(view)).is_some());
         }
+        for tool in Tool::ALL {
+            assert!(row_of(Command::Use(tool)).is_some());
+        }
+    }
+
+    #[test]
+    fn typed_letters_find_the_command_that_is_meant() {
+        let best = |typed: &str| {
+            (TABLE.iter())
+                .filter_map(|row| Some((match_rank(row, typed)?, row.label)))
+                .min()
+                .map(|(_, label)| label)
+        };
+        assert_eq!(best("undo"), Some("Undo"));
+        assert_eq!(best("deriv"), Some("Derive the draft"));
+        assert_eq!(best("rsl"), Some("Reset layout"));
+        assert_eq!(best("180°"), Some("Turn by half"));
+        assert_eq!(best("qqq"), None);
     }
 }

@@ -1,10 +1,9 @@
-//! A design that was opened: where it came from, what was remarked on, and how the
-//! program looks at it.
+//! A design that was opened: where it came from and what was remarked on.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pickglass::design::{Design, Positions, Sett, Srgb, WeavePattern};
+use pickglass::design::{Design, Sett};
 use pickglass::formats::image::{ImageAs, ImageContent, ImageReading};
 use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, presets};
 
@@ -13,17 +12,13 @@ use crate::cli::{ConvertArgs, ImageArgs, SettArgs};
 /// The preset that is shown when nothing is asked for.
 pub const DEFAULT_PRESET: &str = "default";
 
-/// A whole design larger than this is shown by its weave's repeat alone, threads.
-const LARGEST_WHOLE: u32 = 192;
-
-/// A design with the remarks made while reading it, and its drawdown worked out once.
+/// A design with the remarks made while reading it.
 #[derive(Clone)]
 pub struct Opened {
     pub design: Arc<Design>,
     pub warnings: Vec<String>,
-    weave: Arc<WeavePattern>,
-    ends: Arc<Positions>,
-    picks: Arc<Positions>,
+    /// The file it is from; `None` = it came with the program.
+    pub path: Option<PathBuf>,
 }
 
 impl Opened {
@@ -38,6 +33,7 @@ impl Opened {
             face_down: image.face_down,
             ..LoadOptions::default()
         };
+        let mut path = None;
         let imported = match presets::design(argument) {
             Some(design) => {
                 let mut design = design?;
@@ -52,20 +48,23 @@ impl Opened {
             None if !argument.contains(['.', '/', '\\']) && !Path::new(argument).exists() => {
                 return Err(no_such_preset(argument));
             }
-            None => formats::load(Path::new(argument), &options)?,
+            None => {
+                path = Some(PathBuf::from(argument));
+                formats::load(Path::new(argument), &options)?
+            }
         };
         let files = MapFiles {
             warp: image.warp_map.clone(),
             weft: image.weft_map.clone(),
         };
         let Imported { design, warnings } = formats::with_map_files(imported, &files, &options)?;
-        Ok(Self::new(design, warnings))
+        Ok(Self::new(design, warnings, path))
     }
 
     /// Opens a preset by name.
     pub fn preset(name: &str) -> anyhow::Result<Self> {
         match presets::design(name) {
-            Some(design) => Ok(Self::new(design?, Vec::new())),
+            Some(design) => Ok(Self::new(design?, Vec::new(), None)),
             None => Err(no_such_preset(name)),
         }
     }
@@ -73,19 +72,17 @@ impl Opened {
     /// Opens a file.
     pub fn file(path: PathBuf) -> anyhow::Result<Self> {
         let Imported { design, warnings } = formats::load(&path, &LoadOptions::default())?;
-        Ok(Self::new(design, warnings))
+        Ok(Self::new(design, warnings, Some(path)))
     }
 
-    fn new(mut design: Design, warnings: Vec<String>) -> Self {
+    fn new(mut design: Design, warnings: Vec<String>, path: Option<PathBuf>) -> Self {
         if design.name.trim().is_empty() {
             design.name = "untitled".to_owned();
         }
         Self {
-            weave: Arc::new(design.weave()),
-            ends: Arc::new(design.end_positions()),
-            picks: Arc::new(design.pick_positions()),
             design: Arc::new(design),
             warnings,
+            path,
         }
     }
 
@@ -94,74 +91,12 @@ impl Opened {
         &self.design.name
     }
 
-    /// The drawdown of one repeat.
-    pub fn weave(&self) -> &WeavePattern {
-        &self.weave
-    }
-
-    /// Ends and picks that show the whole design, colours included: the cloth's own
-    /// repeat where that is small enough to look at, else the weave's.
-    pub fn whole(&self) -> (u32, u32) {
-        let (ends, picks) = (self.design.ends(), self.design.picks());
-        let (all_ends, all_picks) = self.design.cloth_repeat();
-        let bounded = |all: u64, own: u32| match u32::try_from(all) {
-            Ok(all) if all <= own.max(LARGEST_WHOLE) => all,
-            _ => own,
-        };
-        (bounded(all_ends, ends), bounded(all_picks, picks))
-    }
-
-    /// Whether the warp is on top at a crossing of the straight repeat.
-    pub fn warp_up(&self, end: u32, pick: u32) -> bool {
-        self.weave.get_wrapped(i64::from(end), i64::from(pick))
-    }
-
-    /// The colour on top at a crossing of the straight repeat.
-    pub fn colour_on_top(&self, end: u32, pick: u32) -> Srgb {
-        let maps = self.design.maps();
-        let yarn = if self.warp_up(end, pick) {
-            maps.warp(i64::from(end), i64::from(pick))
-        } else {
-            maps.weft(i64::from(end), i64::from(pick))
-        };
-        self.design.yarn(yarn).colour
-    }
-
-    /// The crossing at a point of the cloth (mm) in words; `None` where there is no cloth.
-    pub fn describe_crossing(&self, [x, y]: [f32; 2]) -> Option<String> {
-        let (end, pick) = (
-            self.ends.locate(f64::from(x)).0,
-            self.picks.locate(f64::from(y)).0,
-        );
-        let (ends, picks) = (self.design.ends(), self.design.picks());
-        let (home_end, home_pick) = self.design.lattice().wrap(end, pick, ends, picks)?;
-        let maps = self.design.maps();
-        let name = |yarn| self.design.yarn(yarn).name.as_str();
-        let (warp, weft) = (name(maps.warp(end, pick)), name(maps.weft(end, pick)));
-        let (above, below) = if self.weave.get(home_end, home_pick) {
-            (warp, weft)
-        } else {
-            (weft, warp)
-        };
-        Some(format!(
-            "end {home_end} · pick {home_pick} · {above} over {below}"
-        ))
-    }
-
     /// Size of one repeat of the weave, mm.
     pub fn size_mm(&self) -> [f32; 2] {
-        self.size_of((self.design.ends(), self.design.picks()))
-    }
-
-    /// Size of [`Self::whole`], mm.
-    pub fn whole_mm(&self) -> [f32; 2] {
-        self.size_of(self.whole())
-    }
-
-    fn size_of(&self, (ends, picks): (u32, u32)) -> [f32; 2] {
+        let (ends, picks) = (self.design.ends(), self.design.picks());
         [
-            self.ends.start(i64::from(ends)) as f32,
-            self.picks.start(i64::from(picks)) as f32,
+            self.design.end_positions().start(i64::from(ends)) as f32,
+            self.design.pick_positions().start(i64::from(picks)) as f32,
         ]
     }
 }

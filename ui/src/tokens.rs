@@ -26,8 +26,14 @@ pub const TEXT_BODY: f32 = 13.0;
 pub const TEXT_HEADING: f32 = 16.0;
 pub const TEXT_TITLE: f32 = 20.0;
 
-/// Width of the strip beside the cloth.
-pub const STRIP_WIDTH: f32 = 240.0;
+/// Width of the palette of tools.
+pub const TOOLS_WIDTH: f32 = 80.0;
+/// Least height of a list that scrolls.
+pub const LIST_HEIGHT: f32 = 240.0;
+/// Least side of a pane.
+pub const SMALLEST_PANE: f32 = 120.0;
+/// Longer side of the navigator.
+pub const NAVIGATOR: f32 = 128.0;
 /// Longest a scale bar may get.
 pub const SCALE_BAR: f32 = 160.0;
 /// Width of a message.
@@ -36,11 +42,19 @@ pub const TOAST_WIDTH: f32 = 340.0;
 /// Surround of the cloth, L* 50 in both themes.
 pub const SURROUND: Color32 = Color32::from_gray(119);
 /// The one accent.
-pub const ACCENT: Color32 = Color32::from_rgb(58, 124, 214);
+pub const ACCENT: Color32 = Color32::from_rgb(53, 117, 206);
 /// Grid lines over a drawdown.
 pub const GRID_LINE: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 70);
 /// Every fourth grid line.
-pub const GRID_LINE_STRONG: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 150);
+pub const GRID_LINE_STRONG: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 130);
+/// Every eighth grid line.
+pub const GRID_LINE_STRONGEST: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 200);
+/// The edges of a thread that lies on top.
+pub const THREAD_EDGE: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 72);
+/// Over all that is not marked.
+pub const VEIL: Color32 = Color32::from_rgba_premultiplied(70, 70, 70, 190);
+/// Row and column of the crossing under the pointer.
+pub const CROSSHAIR: Color32 = Color32::from_rgba_premultiplied(16, 34, 58, 70);
 
 /// The title style's name.
 pub fn title() -> TextStyle {
@@ -64,6 +78,10 @@ pub struct Palette {
     pub text: Color32,
     pub warning: Color32,
     pub error: Color32,
+    /// Ground, marks and lines of threading, tie-up and treadling.
+    pub paper: Color32,
+    pub ink: Color32,
+    pub rule: Color32,
 }
 
 impl Palette {
@@ -79,6 +97,9 @@ impl Palette {
                 text: Color32::from_gray(221),
                 warning: Color32::from_rgb(232, 176, 74),
                 error: Color32::from_rgb(244, 138, 126),
+                paper: Color32::from_gray(57),
+                ink: Color32::from_gray(221),
+                rule: Color32::from_gray(88),
             },
             Theme::Light => Self {
                 deep: Color32::from_gray(249),
@@ -89,6 +110,9 @@ impl Palette {
                 text: Color32::from_gray(38),
                 warning: Color32::from_rgb(138, 84, 0),
                 error: Color32::from_rgb(176, 32, 24),
+                paper: Color32::from_gray(252),
+                ink: Color32::from_gray(38),
+                rule: Color32::from_gray(200),
             },
         }
     }
@@ -151,7 +175,7 @@ fn visuals(theme: Theme, palette: Palette) -> egui::Visuals {
     visuals.weak_text_color = Some(palette.quiet);
     visuals.warn_fg_color = palette.warning;
     visuals.error_fg_color = palette.error;
-    visuals.hyperlink_color = ACCENT;
+    visuals.hyperlink_color = palette.text;
     visuals.selection.bg_fill = ACCENT;
     visuals.selection.stroke = Stroke::new(1.0, Color32::WHITE);
     for (widget, fill) in [
@@ -197,7 +221,19 @@ mod tests {
                 }
             }
         }
-        assert!(contrast(ACCENT, Color32::WHITE) >= 3.9);
+        assert!(contrast(ACCENT, Color32::WHITE) >= 4.5);
+    }
+
+    #[test]
+    fn marks_and_the_focus_are_seen() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let palette = Palette::of(theme);
+            assert!(contrast(palette.ink, palette.paper) >= 4.5);
+            // What is no text needs 3 (WCAG 2.2, 1.4.11).
+            for plane in [palette.deep, palette.panel] {
+                assert!(contrast(ACCENT, plane) >= 3.0, "{theme:?} {plane:?}");
+            }
+        }
     }
 
     #[test]

@@ -8,15 +8,18 @@
 //! | `layers` | whether the cloth hangs together (Clapham 1980) |
 //! | `take_up` | crimp from interlacings, diameters and pitches (Peirce 1937) |
 //! | `needs` | shafts, heddles, metres and grams of yarn |
+//! | `reed` | dents, width in the reed, finished size |
 
 mod floats;
 mod layers;
 mod needs;
+mod reed;
 mod take_up;
 
 pub use floats::{FloatLength, FloatLengthsMm, SeamLength, lattice_floats};
 pub use layers::{Layer, loose_layer};
 pub use needs::{YarnNeed, heddles, yarn_needs};
+pub use reed::{Reed, reed};
 pub use take_up::{Interlacing, TakeUp, excess_mm, take_up};
 
 use super::document::Design;

@@ -7,6 +7,8 @@
 //!   (nearly all weft) for the lightest, the steps between spread evenly.
 //! * **Warp, weft**: see `yarn_maps`.
 
+use std::sync::Arc;
+
 use super::numbers::Numbers;
 use super::raster::{Colours, MAX_COLOURS, Pixels, Raster, luma};
 use super::yarn_maps::yarns_only;
@@ -85,7 +87,7 @@ pub fn design(decoded: Decoded, name: &str, options: &LoadOptions) -> Result<Imp
         Fault::new(error.to_string(), "give another sett or image").named(name)
     };
     let mut design = Design::new(stem(name), structure, yarns, maps, sett).map_err(wrong)?;
-    design.origin = Origin {
+    design.origin = Arc::new(Origin {
         first_end: match options.image.corner.from_right() {
             true => FirstEnd::Right,
             false => FirstEnd::Left,
@@ -95,7 +97,7 @@ pub fn design(decoded: Decoded, name: &str, options: &LoadOptions) -> Result<Imp
             false => FirstPick::Bottom,
         },
         ..Origin::default()
-    };
+    });
     Ok(Imported { design, warnings })
 }
 

@@ -43,6 +43,8 @@ struct DesignV1 {
     along: RepeatV1,
     #[serde(default, skip_serializing_if = "Limited::is_empty")]
     colourways: Limited<ColourwayV1, MAX_COLOURWAYS>,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    colourway: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     origin: Option<OriginV1>,
 }
@@ -303,8 +305,9 @@ pub(super) fn to_design(document: Document) -> Result<Design, Fault> {
         .with_lattice(lattice)?
         .with_colourways(colourways)?;
     design.notes = file.notes;
+    design.colourway = file.colourway;
     if let Some(found) = file.origin {
-        design.origin = origin(found)?;
+        design.origin = Arc::new(origin(found)?);
     }
     Ok(design)
 }
@@ -542,6 +545,7 @@ pub(super) fn of_design(design: &Design) -> Result<Document, String> {
         },
         across: of_repeat(lattice.across),
         along: of_repeat(lattice.along),
+        colourway: design.colourway.clone(),
         colourways: Limited(
             design
                 .colourways()
@@ -552,7 +556,7 @@ pub(super) fn of_design(design: &Design) -> Result<Document, String> {
                 })
                 .collect(),
         ),
-        origin: (design.origin != Origin::default()).then(|| of_origin(&design.origin)),
+        origin: (*design.origin != Origin::default()).then(|| of_origin(&design.origin)),
     };
     Ok(Document {
         pickglass: 1,

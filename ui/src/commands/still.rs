@@ -182,6 +182,7 @@ fn request(args: &StillArgs) -> StillRequest {
     StillRequest {
         width: args.size.width,
         height: args.size.height,
+        eye: None,
         view: args.view,
         width_mm: args.mm.map(|mm| mm as f32),
         centre_mm: None,

@@ -87,7 +87,13 @@ fn measure(opened: &Opened, synthesis: SynthesisSettings, job: &Job) -> anyhow::
         seed: synthesis.seed,
         patch: synthesis.patch,
     };
-    let quality = Quality::measure(opened.weave(), &assignment, &catalogue, randomisation, job)?;
+    let quality = Quality::measure(
+        &opened.design.weave(),
+        &assignment,
+        &catalogue,
+        randomisation,
+        job,
+    )?;
     let placement = Placement {
         catalogue: &catalogue,
         assignment: &assignment,

@@ -21,7 +21,9 @@ pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
     let opened = Opened::argument(argument, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let name = opened.name().to_owned();
-    match window::run(opened.clone(), args.smoke_frames) {
+    // Without a design the start page is shown.
+    let shown = args.design.is_some().then(|| opened.clone());
+    match window::run(shown, args.smoke_frames) {
         Ok(()) if args.json => out::say_json(&json!({ "opened": name })),
         Ok(()) => Ok(()),
         Err(NoWindow::Unavailable(reason)) => without_window(&opened, &reason, args.json),

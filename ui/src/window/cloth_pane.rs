@@ -1,8 +1,11 @@
 //! The pane of the cloth: the newest picture where it belongs, however the eye moved
 //! since it was asked for.
 
+use std::sync::Arc;
+
 use egui::{
-    Color32, CursorIcon, Key, Rect, Response, Sense, Stroke, TextureHandle, TextureOptions, vec2,
+    Color32, ColorImage, CursorIcon, Key, PointerButton, Rect, Response, Sense, Stroke,
+    TextureHandle, TextureOptions, vec2,
 };
 
 use super::view::{ClothView, scale_bar};
@@ -23,6 +26,7 @@ pub struct Shown {
     pub error: Option<f64>,
     pub full_size: bool,
     pub full_cloth: bool,
+    pub image: Arc<ColorImage>,
     texture: TextureHandle,
 }
 
@@ -30,17 +34,36 @@ pub struct Shown {
 #[derive(Default)]
 pub struct ClothPane {
     pub shown: Option<Shown>,
+    /// First sight of where the eye has moved since.
+    under: Option<(StillRequest, TextureHandle)>,
 }
 
+/// What is marked on the cloth: a crossing's left, lower, right and upper border, mm.
+pub type Marked = [f32; 4];
+
 impl ClothPane {
+    /// Forgets its pictures.
+    pub fn forget(&mut self) {
+        self.shown = None;
+        self.under = None;
+    }
+
     /// Takes a newer picture.
     pub fn take(&mut self, ctx: &egui::Context, picture: Picture) {
+        let image = Arc::new(picture.image);
+        let data = || egui::ImageData::Color(Arc::clone(&image));
+        if picture.under && self.shown.is_some() {
+            let texture = ctx.load_texture("first sight", data(), TextureOptions::LINEAR);
+            self.under = Some((picture.still, texture));
+            return;
+        }
+        self.under = None;
         let texture = match self.shown.take() {
             Some(mut shown) => {
-                shown.texture.set(picture.image, TextureOptions::LINEAR);
+                shown.texture.set(data(), TextureOptions::LINEAR);
                 shown.texture
             }
-            None => ctx.load_texture("cloth", picture.image, TextureOptions::LINEAR),
+            None => ctx.load_texture("cloth", data(), TextureOptions::LINEAR),
         };
         self.shown = Some(Shown {
             still: picture.still,
@@ -49,27 +72,56 @@ impl ClothPane {
             error: picture.error,
             full_size: picture.full_size,
             full_cloth: picture.full_cloth,
+            image,
             texture,
         });
     }
 
     /// Shows the pane and moves `view` as the person asks.
-    pub fn show(&self, ui: &mut egui::Ui, view: &mut ClothView, description: &str) -> Response {
+    pub fn show(
+        &self,
+        ui: &mut egui::Ui,
+        view: &mut ClothView,
+        description: &str,
+        marked: Option<Marked>,
+    ) -> Response {
         let pane = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(pane, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, description));
         move_view(ui, &response, pane, view);
         let painter = ui.painter_at(pane);
         painter.rect_filled(pane, 0.0, tokens::SURROUND);
-        if let Some(shown) = &self.shown {
-            let still = &shown.still;
+        let draw = |still: &StillRequest, texture: &TextureHandle| {
             if let (Some(centre_mm), Some(width_mm)) = (still.centre_mm, still.width_mm) {
                 let aspect = still.width as f32 / still.height.max(1) as f32;
                 let rect = view.picture_rect(pane, centre_mm, width_mm, aspect);
                 let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-                painter.image(shown.texture.id(), rect, whole, Color32::WHITE);
+                painter.image(texture.id(), rect, whole, Color32::WHITE);
             }
+        };
+        if let Some((still, texture)) = &self.under {
+            draw(still, texture);
+        }
+        if let Some(shown) = &self.shown {
+            draw(&shown.still, &shown.texture);
             scale_bar_ui(ui, pane, view);
+        }
+        if let Some([left, low, right, high]) = marked {
+            let corners = [[left, low], [right, high]].map(|mm| view.to_screen(pane, mm));
+            let rect = Rect::from_two_pos(corners[0], corners[1]).expand(1.0);
+            // Light and dark, so that it shows on every yarn.
+            painter.rect_stroke(
+                rect,
+                1.0,
+                Stroke::new(3.0, Color32::BLACK),
+                egui::StrokeKind::Outside,
+            );
+            painter.rect_stroke(
+                rect,
+                1.0,
+                Stroke::new(1.0, Color32::WHITE),
+                egui::StrokeKind::Outside,
+            );
         }
         if response.has_focus() {
             let stroke = Stroke::new(2.0, tokens::ACCENT);
@@ -81,7 +133,10 @@ impl ClothPane {
 
 /// Drag pans, the wheel and pinching zoom at the pointer, arrow keys pan.
 fn move_view(ui: &egui::Ui, response: &Response, pane: Rect, view: &mut ClothView) {
-    if response.dragged() {
+    let shift = ui.input(|input| input.modifiers.shift);
+    let pans = response.dragged_by(PointerButton::Middle)
+        || (response.dragged_by(PointerButton::Primary) && !shift);
+    if pans {
         view.pan(response.drag_delta());
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
     }

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{DragValue, Id, Modal, RichText};
+use pickglass::design::Design;
 use pickglass::job::Job;
 
 use super::icons;
 use super::task::{Outcome, Task};
 use super::toasts::Grade;
-use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 use crate::values;
 use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
@@ -49,7 +49,7 @@ pub struct Export {
 }
 
 struct Form {
-    opened: Opened,
+    design: Arc<Design>,
     still: StillRequest,
     width: u32,
     seconds: f64,
@@ -71,16 +71,16 @@ impl Drop for Work {
 
 impl Export {
     /// Shows the form for the cloth as it is seen now.
-    pub fn ask(&mut self, opened: Opened, still: StillRequest) {
+    pub fn ask(&mut self, design: Arc<Design>, still: StillRequest) {
         if self.work.is_none() {
             self.form = Some(Form {
                 path: match &self.defaults.path {
                     Some(path) => path.display().to_string(),
-                    None => format!("{}.png", opened.name().replace(['/', '\\'], "-")),
+                    None => format!("{}.png", design.name.replace(['/', '\\'], "-")),
                 },
                 width: self.defaults.width,
                 seconds: self.defaults.seconds,
-                opened,
+                design,
                 still,
                 wrong: None,
             });
@@ -179,9 +179,9 @@ impl Export {
             seconds: Some(form.seconds),
             ..Stop::default()
         };
-        let (opened, work_job) = (form.opened, job.clone());
+        let (design, work_job) = (form.design, job.clone());
         let task = Task::start(ctx, "export", move || {
-            let rendered = still::render_still(&opened.design, &still, &work_job, &mut |pass| {
+            let rendered = still::render_still(&design, &still, &work_job, &mut |pass| {
                 tell(format!("{} spp · {:.0} s", pass.spp, pass.seconds));
             });
             match rendered.and_then(|done| done.save(&path).map(|()| done.report)) {

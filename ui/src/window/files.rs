@@ -1,10 +1,16 @@
-//! Opening files: the system's dialog on its own thread, a typed path where there is
-//! none, and reading on a thread as well.
+//! Opening and saving: the system's dialog on its own thread, a typed path where there is
+//! none, and reading and writing on a thread as well.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::{Id, Key, Modal, RichText};
+use pickglass::design::Design;
+use pickglass::edit::recovery::{self, Found};
+use pickglass::formats::pdf::{self, PdfOptions};
+use pickglass::formats::{self, SaveOptions, atomic};
 
+use super::session;
 use super::task::{Outcome, Task};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
@@ -17,54 +23,189 @@ const OPENED: [&str; 15] = [
     "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg",
     "jpeg", "webp",
 ];
+/// Endings a draft is exported with.
+const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
 
-/// What opening came to.
-pub enum Opening {
+/// What came of a file.
+pub enum FileEvent {
+    /// A design was read, from a file or of the program's own.
     Opened(Box<Opened>),
-    Failed(String),
+    /// Unsaved work of an earlier run, the copy it is from, and its file if it has one.
+    Recovered {
+        design: Box<Design>,
+        lost: Option<String>,
+        copy: PathBuf,
+        original: Option<PathBuf>,
+    },
+    /// This state of the document is in its file.
+    Saved { path: PathBuf, state: u64 },
+    /// A copy was written; what of the design is not in it, one line each.
+    Exported { path: PathBuf, lost: Vec<String> },
+    /// One line for the person.
+    OpenFailed(String),
+    /// One line for the person; the earlier file is as it was.
+    SaveFailed(String),
 }
 
-type Reading = Task<anyhow::Result<Opened>>;
-
-/// The opening of files.
-#[derive(Default)]
-pub struct Files {
-    dialog: Option<Task<Option<PathBuf>>>,
-    reading: Option<(String, Reading)>,
-    typed: Option<TypedPath>,
+/// What a path is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    Open,
+    Save,
+    Export,
+    Print,
 }
 
-struct TypedPath {
-    text: String,
-    reason: &'static str,
-    focused: bool,
-}
-
-impl Files {
-    /// Shows the system's dialog.
-    pub fn ask(&mut self, ctx: &egui::Context) {
-        if self.dialog.is_some() {
-            return;
-        }
-        let task = Task::start(ctx, "dialog", || {
-            rfd::FileDialog::new()
-                .set_title("Open a design, a draft or an image")
-                .add_filter("Designs, drafts and images", &OPENED)
-                .add_filter("All files", &["*"])
-                .pick_file()
-        });
-        match task {
-            Ok(task) => self.dialog = Some(task),
-            Err(_) => self.type_path("The system's dialog could not be opened."),
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Open => "Open by path",
+            Self::Save => "Save as",
+            Self::Export => "Export the draft",
+            Self::Print => "Print to PDF",
         }
     }
 
-    /// Shows the field for a path.
+    fn field(self) -> &'static str {
+        match self {
+            Self::Open => "Path of a .ron, .wif or image file",
+            Self::Save => "Path of a .ron file",
+            Self::Export => "Path that ends in .wif, .png, .bmp, .tif or .gif",
+            Self::Print => "Path of a .pdf file",
+        }
+    }
+
+    fn button(self) -> &'static str {
+        match self {
+            Self::Open => "Open",
+            Self::Save => "Save",
+            Self::Export => "Export",
+            Self::Print => "Print",
+        }
+    }
+
+    /// The system's dialog; `None` = nothing was chosen, or none could open.
+    fn dialog(self, proposed: &str) -> Option<PathBuf> {
+        let dialog = rfd::FileDialog::new();
+        match self {
+            Self::Open => dialog
+                .set_title("Open a design, a draft or an image")
+                .add_filter("Designs, drafts and images", &OPENED)
+                .add_filter("All files", &["*"])
+                .pick_file(),
+            Self::Save => dialog
+                .set_title("Save the design")
+                .add_filter("Design", &["ron"])
+                .set_file_name(proposed)
+                .save_file(),
+            Self::Export => dialog
+                .set_title("Export the draft")
+                .add_filter("Drafts and loom images", &EXPORTED)
+                .set_file_name(proposed)
+                .save_file(),
+            Self::Print => dialog
+                .set_title("Print to PDF")
+                .add_filter("PDF", &["pdf"])
+                .set_file_name(proposed)
+                .save_file(),
+        }
+    }
+}
+
+struct Dialog {
+    purpose: Purpose,
+    proposed: String,
+    task: Task<Option<PathBuf>>,
+}
+
+struct TypedPath {
+    purpose: Purpose,
+    text: String,
+    reason: &'static str,
+    focused: bool,
+    /// The file exists and the person was asked once whether to write over it.
+    over: Option<PathBuf>,
+}
+
+/// What is to be written: the design as it was when it was asked for.
+pub struct Writing {
+    pub design: Arc<Design>,
+    /// The id of the state, see `Document::state_id`.
+    pub state: u64,
+}
+
+/// The opening and saving of files.
+#[derive(Default)]
+pub struct Files {
+    dialog: Option<Dialog>,
+    typed: Option<TypedPath>,
+    reading: Option<(String, Task<FileEvent>)>,
+    writing: Option<(String, Task<FileEvent>)>,
+    /// Paths are typed: no dialog of the system is tried.
+    pub typed_only: bool,
+    /// A path that was chosen for writing; the app hands over the design then.
+    chosen: Option<(Purpose, PathBuf)>,
+}
+
+impl Files {
+    /// Asks for a file to open.
+    pub fn ask(&mut self, ctx: &egui::Context) {
+        self.ask_for(ctx, Purpose::Open, String::new());
+    }
+
+    /// Asks where to save; `proposed` is a file's name, perhaps with its folder.
+    pub fn ask_save(&mut self, ctx: &egui::Context, proposed: String) {
+        self.ask_for(ctx, Purpose::Save, proposed);
+    }
+
+    /// Asks where to export the draft to.
+    pub fn ask_export(&mut self, ctx: &egui::Context, proposed: String) {
+        self.ask_for(ctx, Purpose::Export, proposed);
+    }
+
+    /// Asks where to print to.
+    pub fn ask_print(&mut self, ctx: &egui::Context, proposed: String) {
+        self.ask_for(ctx, Purpose::Print, proposed);
+    }
+
+    fn ask_for(&mut self, ctx: &egui::Context, purpose: Purpose, proposed: String) {
+        if self.dialog.is_some() {
+            return;
+        }
+        if self.typed_only {
+            self.type_for(purpose, proposed, "Type or paste it.");
+            return;
+        }
+        let offered = proposed.clone();
+        let task = Task::start(ctx, "dialog", move || purpose.dialog(&offered));
+        match task {
+            Ok(task) => {
+                self.dialog = Some(Dialog {
+                    purpose,
+                    proposed,
+                    task,
+                });
+            }
+            Err(_) => self.type_for(
+                purpose,
+                proposed,
+                "The system's dialog could not be opened.",
+            ),
+        }
+    }
+
+    /// Shows the field for a path to open.
     pub fn type_path(&mut self, reason: &'static str) {
+        self.type_for(Purpose::Open, String::new(), reason);
+    }
+
+    fn type_for(&mut self, purpose: Purpose, text: String, reason: &'static str) {
         self.typed = Some(TypedPath {
-            text: String::new(),
+            purpose,
+            text,
             reason,
             focused: false,
+            over: None,
         });
     }
 
@@ -74,15 +215,50 @@ impl Files {
         self.read(ctx, name, move || Opened::preset(&preset));
     }
 
+    /// Opens a new design.
+    pub fn open_blank(&mut self, ctx: &egui::Context) {
+        self.read(ctx, "a new design", session::blank);
+    }
+
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
         self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
     }
 
-    /// The file that is being read, if any.
-    pub fn reading(&self) -> Option<&str> {
-        self.reading.as_ref().map(|(name, _)| name.as_str())
+    /// Opens unsaved work of an earlier run.
+    pub fn recover(&mut self, ctx: &egui::Context, found: &Found) {
+        let Found {
+            path,
+            name,
+            original,
+            ..
+        } = found.clone();
+        let work = move || match recovery::load(&path) {
+            Ok(recovered) => FileEvent::Recovered {
+                design: Box::new(recovered.design),
+                lost: recovered.lost,
+                copy: path,
+                original,
+            },
+            Err(error) => FileEvent::OpenFailed(error.to_string()),
+        };
+        if let Ok(task) = Task::start(ctx, "reading", work) {
+            self.reading = Some((name, task));
+        }
+    }
+
+    /// The file that is being read or written, if any, in words.
+    pub fn at_work(&self) -> Option<String> {
+        let reading = self
+            .reading
+            .as_ref()
+            .map(|(name, _)| format!("Reading {name}"));
+        reading.or_else(|| {
+            self.writing
+                .as_ref()
+                .map(|(name, _)| format!("Writing {name}"))
+        })
     }
 
     fn read(
@@ -91,41 +267,109 @@ impl Files {
         name: &str,
         work: impl FnOnce() -> anyhow::Result<Opened> + Send + 'static,
     ) {
+        let work = move || match work() {
+            Ok(opened) => FileEvent::Opened(Box::new(opened)),
+            Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
+        };
         // A newer choice replaces one that is still being read.
         if let Ok(task) = Task::start(ctx, "reading", work) {
             self.reading = Some((name.to_owned(), task));
         }
     }
 
+    /// Writes the design into its file.
+    pub fn save(&mut self, ctx: &egui::Context, path: PathBuf, what: Writing) {
+        self.write(ctx, Purpose::Save, path, what);
+    }
+
+    fn write(&mut self, ctx: &egui::Context, purpose: Purpose, path: PathBuf, what: Writing) {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
+        let work = move || {
+            let Writing { design, state } = what;
+            let done = match purpose {
+                Purpose::Print => print(&design, &path).map(|()| Vec::new()),
+                _ => formats::save(&design, &path, &SaveOptions::default())
+                    .map_err(|error| error.to_string()),
+            };
+            match done {
+                Ok(_) if purpose == Purpose::Save => FileEvent::Saved { path, state },
+                Ok(lost) => FileEvent::Exported { path, lost },
+                Err(error) => FileEvent::SaveFailed(error),
+            }
+        };
+        if let Ok(task) = Task::start(ctx, "writing", work) {
+            self.writing = Some((name.to_string_lossy().into_owned(), task));
+        }
+    }
+
+    /// Whether something is being written.
+    pub fn is_writing(&self) -> bool {
+        self.writing.is_some() || self.chosen.is_some()
+    }
+
+    /// Whether the person is being asked for a path.
+    pub fn is_asking(&self) -> bool {
+        self.dialog.is_some() || self.typed.is_some()
+    }
+
+    /// Writes where a path was chosen for it.
+    pub fn write_chosen(&mut self, ctx: &egui::Context, what: impl FnOnce() -> Option<Writing>) {
+        if let Some((purpose, path)) = self.chosen.take()
+            && let Some(what) = what()
+        {
+            self.write(ctx, purpose, path, what);
+        }
+    }
+
     /// Picks up what the threads finished.
-    pub fn poll(&mut self, ctx: &egui::Context) -> Option<Opening> {
+    pub fn poll(&mut self, ctx: &egui::Context) -> Option<FileEvent> {
         if let Some(dialog) = &self.dialog {
-            match dialog.poll() {
-                Outcome::Working => {}
-                Outcome::Ready(Some(path)) => {
-                    self.dialog = None;
-                    self.open(ctx, path);
-                }
-                Outcome::Ready(None) | Outcome::Lost => {
-                    let never_opened = dialog.seconds() < NEVER_OPENED;
-                    self.dialog = None;
-                    if never_opened {
-                        self.type_path("This system offers no file dialog.");
-                    }
+            let choice = match dialog.task.poll() {
+                Outcome::Working => None,
+                Outcome::Ready(choice) => Some(choice),
+                Outcome::Lost => Some(None),
+            };
+            if let Some(choice) = choice
+                && let Some(dialog) = self.dialog.take()
+            {
+                match choice {
+                    Some(path) => self.choose(ctx, dialog.purpose, path),
+                    // No portal and no helper program: the dialog never was there.
+                    None if dialog.task.seconds() < NEVER_OPENED => self.type_for(
+                        dialog.purpose,
+                        dialog.proposed,
+                        "This system offers no file dialog.",
+                    ),
+                    None => {}
                 }
             }
         }
-        let (name, task) = self.reading.as_ref()?;
-        let opening = match task.poll() {
-            Outcome::Working => return None,
-            Outcome::Ready(Ok(opened)) => Opening::Opened(Box::new(opened)),
-            Outcome::Ready(Err(error)) => Opening::Failed(format!("{error:#}")),
-            Outcome::Lost => Opening::Failed(format!(
-                "{name}: reading it failed unexpectedly: check the file"
-            )),
-        };
-        self.reading = None;
-        Some(opening)
+        for (slot, failed) in [
+            (&mut self.reading, FileEvent::OpenFailed as fn(String) -> _),
+            (&mut self.writing, FileEvent::SaveFailed as fn(String) -> _),
+        ] {
+            let Some((name, task)) = slot else { continue };
+            let event = match task.poll() {
+                Outcome::Working => continue,
+                Outcome::Ready(event) => event,
+                Outcome::Lost => failed(format!(
+                    "{name}: this failed unexpectedly: check the file and the folder"
+                )),
+            };
+            *slot = None;
+            return Some(event);
+        }
+        None
+    }
+
+    fn choose(&mut self, ctx: &egui::Context, purpose: Purpose, path: PathBuf) {
+        match purpose {
+            Purpose::Open => self.open(ctx, path),
+            Purpose::Save => self.chosen = Some((purpose, with_ending(path, "ron"))),
+            Purpose::Export => self.chosen = Some((purpose, with_ending(path, "wif"))),
+            Purpose::Print => self.chosen = Some((purpose, with_ending(path, "pdf"))),
+        }
+        ctx.request_repaint();
     }
 
     /// Shows the field for a path, when it is asked for.
@@ -133,35 +377,71 @@ impl Files {
         let Some(typed) = &mut self.typed else {
             return;
         };
-        let (mut open, mut close) = (false, false);
-        let modal = Modal::new(Id::unique("typed path")).show(ctx, |ui| {
-            ui.set_width(tokens::TOAST_WIDTH);
-            let quiet = Palette::current(ui).quiet;
-            ui.label(RichText::new("Open by path").text_style(egui::TextStyle::Heading));
-            ui.label(RichText::new(typed.reason).color(quiet));
-            let label = ui.label("Path of a .ron, .wif or image file");
-            let field = ui
-                .add(egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY))
-                .labelled_by(label.id);
-            if !typed.focused {
-                field.request_focus();
-                typed.focused = true;
-            }
-            open |= field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-            ui.add_space(tokens::GAP);
-            ui.horizontal(|ui| {
-                let ready = !typed.text.trim().is_empty();
-                open |= ui.add_enabled(ready, egui::Button::new("Open")).clicked();
-                close |= ui.button("Cancel").clicked();
-            });
-        });
+        let (mut done, mut close) = (false, false);
+        let modal = Modal::new(Id::unique("typed path"))
+            .show(ctx, |ui| typed_ui(ui, typed, &mut done, &mut close));
         close |= modal.should_close();
-        let path = typed.text.trim().trim_matches('"').to_owned();
-        if open && !path.is_empty() {
+        let path = PathBuf::from(typed.text.trim().trim_matches('"'));
+        if done && !path.as_os_str().is_empty() {
+            let purpose = typed.purpose;
+            // Ask once before an existing file is written over.
+            if purpose != Purpose::Open && path.exists() && typed.over.as_deref() != Some(&*path) {
+                typed.over = Some(path);
+                return;
+            }
             self.typed = None;
-            self.open(ctx, PathBuf::from(path));
+            self.choose(ctx, purpose, path);
         } else if close {
             self.typed = None;
         }
+    }
+}
+
+fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &mut bool) {
+    ui.set_width(tokens::TOAST_WIDTH);
+    let palette = Palette::current(ui);
+    ui.label(RichText::new(typed.purpose.title()).text_style(egui::TextStyle::Heading));
+    ui.label(RichText::new(typed.reason).color(palette.quiet));
+    let label = ui.label(typed.purpose.field());
+    let field = ui
+        .add(egui::TextEdit::singleline(&mut typed.text).desired_width(f32::INFINITY))
+        .labelled_by(label.id);
+    if !typed.focused {
+        field.request_focus();
+        typed.focused = true;
+    }
+    *done |= field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    let over = (typed.over.as_deref()).is_some_and(|over| over == Path::new(typed.text.trim()));
+    if over {
+        ui.label(
+            RichText::new("Warning: this file exists and will be written over.")
+                .color(palette.warning),
+        );
+    }
+    ui.add_space(tokens::GAP);
+    ui.horizontal(|ui| {
+        let ready = !typed.text.trim().is_empty();
+        let name = if over {
+            "Write over it"
+        } else {
+            typed.purpose.button()
+        };
+        *done |= ui.add_enabled(ready, egui::Button::new(name)).clicked();
+        *close |= ui.button("Cancel").clicked();
+    });
+}
+
+/// Writes a design as pages.
+fn print(design: &Design, path: &Path) -> Result<(), String> {
+    let pages = pdf::write(design, &design.weave(), &PdfOptions::default());
+    let bytes = pages.map_err(|error| error.to_string())?;
+    atomic::write(path, &bytes).map_err(|error| error.to_string())
+}
+
+/// The path with this ending where it has none.
+fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
+    match path.extension() {
+        Some(_) => path,
+        None => path.with_extension(ending),
     }
 }

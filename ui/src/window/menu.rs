@@ -1,91 +1,183 @@
-//! The menu bar and the help sheet, both made from the command table.
+//! The menu bar, the keys and the help sheet, all made from the command table.
 
-use egui::{Button, Grid, Id, MenuBar, Modal, RichText};
+use std::path::PathBuf;
+
+use egui::{Button, Grid, Id, KeyboardShortcut, MenuBar, Modal, Modifiers, RichText};
 use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
-
-use crate::command_table::{Command, Menu, TABLE};
-use crate::tokens::{self, Palette};
 use pickglass::still::LightChoice;
+
+use super::panes::Pane;
+use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
+use crate::tokens::{self, Palette};
 
 /// What was chosen.
 pub enum Choice {
     Command(Command),
     Preset(&'static str),
+    Recent(PathBuf),
     Light(&'static str),
+    Show(Pane),
 }
 
-/// What the menus show as chosen.
-pub struct Chosen<'s> {
+/// What the menus show as chosen, and what can be done now.
+pub struct Situation<'s> {
+    pub open: bool,
+    /// What would be undone and redone.
+    pub undo: Option<String>,
+    pub redo: Option<String>,
+    pub selection: bool,
     pub view: View,
     pub light: &'s LightChoice,
-    pub strip: bool,
     pub paused: bool,
-    pub has_design: bool,
+    pub tool: Tool,
+    pub arrangement: DraftLayout,
+    pub structure_alone: bool,
+    pub grid_lines: bool,
+    pub long_floats: bool,
+    pub ghosts: bool,
+    pub navigator: bool,
+    pub symmetry: [bool; 2],
+    pub recent: &'s [PathBuf],
+}
+
+impl Situation<'_> {
+    /// Whether a command can be done now.
+    pub fn allows(&self, command: Command) -> bool {
+        match command {
+            Command::New
+            | Command::Open
+            | Command::OpenPath
+            | Command::Quit
+            | Command::Theme
+            | Command::ResetLayout
+            | Command::Palette
+            | Command::Shortcuts => true,
+            Command::Undo => self.undo.is_some(),
+            Command::Redo => self.redo.is_some(),
+            Command::Cut
+            | Command::Copy
+            | Command::Clear
+            | Command::Deselect
+            | Command::FillSelection
+            | Command::CropToSelection => self.open && self.selection,
+            _ => self.open,
+        }
+    }
+
+    /// Whether a command stands for something that is on.
+    fn on(&self, command: Command) -> bool {
+        match command {
+            Command::Look(view) => view == self.view,
+            Command::Pause => self.paused,
+            Command::Use(tool) => tool == self.tool,
+            Command::Arrange(arrangement) => arrangement == self.arrangement,
+            Command::Structure => self.structure_alone,
+            Command::GridLines => self.grid_lines,
+            Command::LongFloats => self.long_floats,
+            Command::Ghosts => self.ghosts,
+            Command::Navigator => self.navigator,
+            Command::SymmetryAcross => self.symmetry[0],
+            Command::SymmetryAlong => self.symmetry[1],
+            _ => false,
+        }
+    }
+
+    /// What a row says now: undo and redo name what they would do.
+    fn label(&self, row: &Row) -> String {
+        let named = match row.command {
+            Command::Undo => self.undo.as_deref(),
+            Command::Redo => self.redo.as_deref(),
+            _ => None,
+        };
+        match named {
+            Some(entry) => format!("{}: {entry}", row.label),
+            None => row.label.to_owned(),
+        }
+    }
 }
 
 /// Shows the menu bar with the design's name at its end.
-pub fn show(ui: &mut egui::Ui, chosen: &Chosen<'_>, title: &str) -> Option<Choice> {
+pub fn show(ui: &mut egui::Ui, situation: &Situation<'_>, title: &str) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
-        for (menu, label) in [
-            (Menu::File, "File"),
-            (Menu::View, "View"),
-            (Menu::Help, "Help"),
-        ] {
-            ui.menu_button(label, |ui| {
-                for row in TABLE.iter().filter(|row| row.menu == menu) {
-                    if row.command == Command::Quit || row.command == Command::Fit {
-                        ui.separator();
-                    }
-                    choice = row_ui(ui, row, chosen)
-                        .map(Choice::Command)
-                        .or(choice.take());
-                    if row.command == Command::OpenPath {
-                        choice = presets_ui(ui).or(choice.take());
-                    }
-                }
-                if menu == Menu::View {
-                    ui.separator();
-                    choice = lights_ui(ui, chosen.light).or(choice.take());
-                }
+        for menu in Menu::ALL {
+            ui.menu_button(menu.title(), |ui| {
+                choice = menu_ui(ui, menu, situation).or(choice.take());
             });
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(RichText::new(title).color(Palette::current(ui).quiet));
+            let quiet = Palette::current(ui).quiet;
+            let find = Button::new(RichText::new("Find a command").color(quiet)).small();
+            if ui.add(find).on_hover_text("Ctrl+K").clicked() {
+                choice = Some(Choice::Command(Command::Palette));
+            }
+            ui.add(egui::Label::new(RichText::new(title).strong()).truncate());
         });
     });
     choice
 }
 
-fn row_ui(
-    ui: &mut egui::Ui,
-    row: &crate::command_table::Row,
-    chosen: &Chosen<'_>,
-) -> Option<Command> {
-    let on = match row.command {
-        Command::Look(view) => view == chosen.view,
-        Command::Strip => chosen.strip,
-        Command::Pause => chosen.paused,
-        _ => false,
-    };
-    let enabled = chosen.has_design
-        || matches!(
-            row.command,
-            Command::Open | Command::OpenPath | Command::Quit | Command::Theme | Command::Shortcuts
-        );
-    let mut button = Button::selectable(on, row.label);
-    if let Some(shortcut) = &row.shortcut {
+fn menu_ui(ui: &mut egui::Ui, menu: Menu, situation: &Situation<'_>) -> Option<Choice> {
+    let mut choice = None;
+    // The longest menu fits a window of 640 points.
+    let spacing = ui.spacing_mut();
+    spacing.item_spacing.y = 0.0;
+    spacing.interact_size.y = 5.0 * tokens::GRID;
+    spacing.button_padding.y = 0.5 * tokens::GRID;
+    for row in TABLE.iter().filter(|row| row.menu == menu) {
+        if row.apart {
+            ui.separator();
+        }
+        let chosen = row_ui(ui, row, situation).map(Choice::Command);
+        choice = chosen.or(choice);
+        if row.command == Command::OpenPath {
+            choice = recent_ui(ui, situation.recent).or(choice);
+            choice = presets_ui(ui).or(choice);
+        }
+    }
+    if menu == Menu::View {
+        ui.separator();
+        choice = lights_ui(ui, situation.light).or(choice);
+        choice = panes_ui(ui).or(choice);
+    }
+    choice
+}
+
+/// One command as a row of a menu.
+pub fn row_ui(ui: &mut egui::Ui, row: &Row, situation: &Situation<'_>) -> Option<Command> {
+    let mut button = Button::selectable(situation.on(row.command), situation.label(row));
+    if let Some(shortcut) = row.shortcuts.first() {
         button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
     }
     let clicked = ui
-        .add_enabled(enabled, button)
+        .add_enabled(situation.allows(row.command), button)
         .on_hover_text(row.tip)
         .clicked();
     if clicked {
         ui.close();
     }
     clicked.then_some(row.command)
+}
+
+fn recent_ui(ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
+    let mut choice = None;
+    ui.menu_button("Recent files", |ui| {
+        if recent.is_empty() {
+            ui.label("None yet: files you open or save are listed here.");
+        }
+        for path in recent {
+            let name = path.file_name().unwrap_or(path.as_os_str());
+            let button = Button::new(name.to_string_lossy());
+            // A file that is gone stays listed, greyed, until newer ones push it out.
+            let shown = ui.add_enabled(path.exists(), button);
+            if shown.on_hover_text(path.display().to_string()).clicked() {
+                choice = Some(Choice::Recent(path.clone()));
+                ui.close();
+            }
+        }
+    });
+    choice
 }
 
 fn presets_ui(ui: &mut egui::Ui) -> Option<Choice> {
@@ -115,47 +207,101 @@ fn lights_ui(ui: &mut egui::Ui, light: &LightChoice) -> Option<Choice> {
     choice
 }
 
-/// The command whose shortcut was pressed. Single keys act only while no text field has
-/// the focus.
+fn panes_ui(ui: &mut egui::Ui) -> Option<Choice> {
+    let mut choice = None;
+    ui.menu_button("Panes", |ui| {
+        for pane in Pane::ALL {
+            if ui.button(pane.title()).clicked() {
+                choice = Some(Choice::Show(pane));
+                ui.close();
+            }
+        }
+    });
+    choice
+}
+
+/// The single key of a command.
+pub fn key_of(command: Command) -> Option<egui::Key> {
+    let row = TABLE.iter().find(|row| row.command == command)?;
+    let single = row
+        .shortcuts
+        .iter()
+        .find(|shortcut| shortcut.modifiers.is_none())?;
+    Some(single.logical_key)
+}
+
+/// The command whose shortcut was pressed. Keys without Ctrl or Alt act only while no text
+/// field has the focus.
 pub fn pressed(ctx: &egui::Context) -> Option<Command> {
     let typing = ctx.egui_wants_keyboard_input() && ctx.text_edit_focused();
-    TABLE.iter().find_map(|row| {
-        let shortcut = row.shortcut?;
-        if typing && shortcut.modifiers.is_none() {
+    if !typing && let Some(command) = clipboard(ctx) {
+        return Some(command);
+    }
+    // A shortcut also matches with more modifiers held than it names: most named first.
+    let mut rows: Vec<(&KeyboardShortcut, Command)> = (TABLE.iter())
+        .flat_map(|row| row.shortcuts.iter().map(|shortcut| (shortcut, row.command)))
+        .collect();
+    rows.sort_by_key(|(shortcut, _)| std::cmp::Reverse(count(shortcut.modifiers)));
+    rows.into_iter().find_map(|(shortcut, command)| {
+        let modifiers = shortcut.modifiers;
+        let alone = !modifiers.command && !modifiers.alt;
+        if alone && (typing || !ctx.input(|input| plain(input.modifiers, modifiers))) {
             return None;
         }
-        ctx.input_mut(|input| input.consume_shortcut(&shortcut))
-            .then_some(row.command)
+        // In a text field, select all, undo and the like mean its text.
+        if typing && !outside_text(command) {
+            return None;
+        }
+        ctx.input_mut(|input| input.consume_shortcut(shortcut))
+            .then_some(command)
+    })
+}
+
+/// Whether a command's keys act while a text is typed: those of files and of the palette.
+fn outside_text(command: Command) -> bool {
+    let menu = TABLE
+        .iter()
+        .find(|row| row.command == command)
+        .map(|row| row.menu);
+    matches!(menu, Some(Menu::File | Menu::Help))
+}
+
+fn count(modifiers: Modifiers) -> u32 {
+    u32::from(modifiers.command) + u32::from(modifiers.shift) + u32::from(modifiers.alt)
+}
+
+/// Whether nothing but what a single key names is held; Shift may be part of typing a
+/// sign such as `+`.
+fn plain(held: Modifiers, named: Modifiers) -> bool {
+    !held.command && !held.ctrl && !held.alt && (held.shift || !named.shift)
+}
+
+/// Systems send cut, copy and paste as events of their own, not as keys.
+fn clipboard(ctx: &egui::Context) -> Option<Command> {
+    ctx.input(|input| {
+        input.events.iter().find_map(|event| match event {
+            egui::Event::Copy => Some(Command::Copy),
+            egui::Event::Cut => Some(Command::Cut),
+            egui::Event::Paste(_) => Some(Command::Paste),
+            _ => None,
+        })
     })
 }
 
 /// Shows the table of shortcuts; false when it was closed.
 pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
     let mut open = true;
+    let room = ctx.content_rect().height() - 12.0 * tokens::PAD;
     let modal = Modal::new(Id::unique("shortcuts")).show(ctx, |ui| {
         ui.label(RichText::new("Keyboard shortcuts").text_style(tokens::title()));
         ui.add_space(tokens::GAP);
-        Grid::new("shortcut table")
-            .num_columns(2)
-            .spacing([tokens::PAD * 2.0, tokens::GRID])
+        egui::ScrollArea::vertical()
+            .max_height(room.max(tokens::LIST_HEIGHT))
             .show(ui, |ui| {
-                for row in TABLE {
-                    let Some(shortcut) = row.shortcut else {
-                        continue;
-                    };
-                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).monospace());
-                    ui.label(row.tip);
-                    ui.end_row();
+                for menu in Menu::ALL {
+                    sheet_ui(ui, menu);
                 }
-                for (gesture, tip) in [
-                    ("Drag", "Move the cloth"),
-                    ("Wheel", "Zoom at the pointer"),
-                    ("Arrow keys", "Move the cloth, once it was clicked"),
-                ] {
-                    ui.label(RichText::new(gesture).monospace());
-                    ui.label(tip);
-                    ui.end_row();
-                }
+                gestures_ui(ui);
             });
         ui.add_space(tokens::GAP);
         if ui.button("Close").clicked() {
@@ -163,4 +309,54 @@ pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
         }
     });
     open && !modal.should_close()
+}
+
+fn sheet_ui(ui: &mut egui::Ui, menu: Menu) {
+    ui.add_space(tokens::GRID);
+    ui.label(RichText::new(menu.title()).strong());
+    Grid::new(("shortcut table", menu.title()))
+        .num_columns(2)
+        .spacing([tokens::PAD * 2.0, tokens::GRID])
+        .show(ui, |ui| {
+            let rows = TABLE.iter().filter(|row| row.menu == menu);
+            for row in rows.filter(|row| !row.shortcuts.is_empty()) {
+                let keys: Vec<_> = (row.shortcuts.iter())
+                    .map(|shortcut| ui.ctx().format_shortcut(shortcut))
+                    .collect();
+                ui.label(RichText::new(keys.join("  ")).monospace());
+                ui.label(format!("{}: {}", row.label.trim_end_matches('…'), row.tip));
+                ui.end_row();
+            }
+        });
+}
+
+/// What the pointer does, which no table of keys can say.
+fn gestures_ui(ui: &mut egui::Ui) {
+    ui.add_space(tokens::GRID);
+    ui.label(RichText::new("Pointer").strong());
+    Grid::new("gestures")
+        .num_columns(2)
+        .spacing([tokens::PAD * 2.0, tokens::GRID])
+        .show(ui, |ui| {
+            for (gesture, tip) in [
+                (
+                    "Left button",
+                    "Draft: warp up, or the first paint. Cloth: move it",
+                ),
+                ("Right button", "Draft: weft up, or the second paint"),
+                ("Space or middle", "Move what is seen"),
+                ("Wheel", "Zoom at the pointer"),
+                ("Hold a tool's key", "That tool until the key is let go"),
+                ("Arrow keys", "Draft: move the cell cursor. Cloth: move it"),
+                (
+                    "Space, Enter",
+                    "Draft: exchange warp and weft at the cursor",
+                ),
+                ("Esc", "Give up the gesture, or forget the selection"),
+            ] {
+                ui.label(RichText::new(gesture).monospace());
+                ui.label(tip);
+                ui.end_row();
+            }
+        });
 }

@@ -1,29 +1,54 @@
-//! The window: a viewer that shows a design refining.
+//! The window: paint a weave, watch the cloth.
 //!
-//! [`app`] holds the state and lays out the panes; [`worker`] draws on a thread of its
-//! own and sends pictures; [`view`] is the arithmetic of pan and zoom; [`files`] opens
-//! and exports on further threads, so that the window never waits.
+//! [`app`] holds the state and the frame; [`layout`] says where the panes lie. A pane
+//! changes nothing itself: it pushes [`action`]s, which [`act`] does after all panes were
+//! shown; [`obey`] does the commands of menus and keys. [`draft`] is the pane one paints in,
+//! [`preview`] the cloth, whose [`worker`] draws on a thread of its own; the others are in
+//! [`panes`]. [`files`] reads and writes on further threads, so that the window never
+//! waits.
 
+mod act;
+mod action;
 mod app;
+mod asking;
+mod autosave;
+mod cloth;
 mod cloth_pane;
+mod crossing;
+mod draft;
 mod export;
 mod files;
+mod forms;
 mod icons;
+mod laid;
+mod layout;
+mod leaving;
 mod menu;
+mod obey;
+mod palette;
+mod panes;
+mod preview;
+mod session;
+mod settings;
+mod start;
 mod status;
-mod strip;
 mod task;
 #[cfg(test)]
 mod tests;
 mod toasts;
+mod tools;
 mod view;
+mod volume;
+mod weave;
 mod worker;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::opened::Opened;
-use app::PreviewSettings;
+use app::AppOptions;
+use autosave::RecoveryFolder;
+use settings::SettingsFile;
 
 /// Why there is no window.
 pub enum NoWindow {
@@ -34,7 +59,7 @@ pub enum NoWindow {
 }
 
 /// Opens the window and returns when it is closed.
-pub fn run(opened: Opened, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
+pub fn run(opened: Option<Opened>, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
     if !display_named() {
         return Err(NoWindow::Unavailable(
             "no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned(),
@@ -55,9 +80,14 @@ pub fn run(opened: Opened, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
         "pickglass",
         options,
         Box::new(move |cc| {
-            let viewer = app::Viewer::new(&cc.egui_ctx, Some(opened), PreviewSettings::default())?;
+            let options = AppOptions {
+                settings: SettingsFile::of_user(),
+                recovery: RecoveryFolder::of_user(),
+                ..AppOptions::default()
+            };
+            let app = app::App::new(&cc.egui_ctx, opened, options)?;
             created.store(true, Ordering::Relaxed);
-            Ok(Box::new(viewer.closing_after(smoke_frames)))
+            Ok(Box::new(app.closing_after(smoke_frames)))
         }),
     );
     match outcome {

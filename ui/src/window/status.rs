@@ -1,26 +1,28 @@
 //! The status line: what is shown, how good it is, and what is under way.
 
 use egui::{ProgressBar, RichText};
+use pickglass::design::Design;
 
 use super::cloth_pane::Shown;
 use super::icons;
 use super::toasts::Grade;
 use super::worker::{Building, Phase};
-use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 
 /// What the status line tells of.
 pub struct Status<'s> {
-    pub opened: Option<&'s Opened>,
+    pub design: Option<&'s Design>,
     pub shown: Option<&'s Shown>,
     pub phase: &'s Phase,
     pub building: Option<Building>,
     pub paused: bool,
     pub export: Option<String>,
-    /// The file that is being read.
-    pub reading: Option<&'s str>,
+    /// The file that is being read or written, in words.
+    pub files: Option<String>,
     /// The crossing under the pointer, in words.
     pub crossing: Option<&'s str>,
+    /// The tool in use.
+    pub tool: &'s str,
 }
 
 /// What the person wants ended.
@@ -35,17 +37,17 @@ pub fn show(ui: &mut egui::Ui, status: &Status<'_>) -> Option<Cancel> {
     let mut cancel = None;
     let quiet = Palette::current(ui).quiet;
     ui.horizontal_centered(|ui| {
-        if let Some(opened) = status.opened {
-            let design = &opened.design;
+        if let Some(design) = status.design {
             let (ends, picks) = (design.ends(), design.picks());
-            ui.label(format!("{} · {ends} ends × {picks} picks", opened.name()));
+            ui.label(format!("{ends} ends × {picks} picks"));
+            ui.label(RichText::new(status.tool).color(quiet));
         }
         if let Some(crossing) = status.crossing {
-            ui.label(RichText::new(crossing).color(quiet));
+            ui.label(crossing);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if let Some(name) = status.reading {
-                ui.label(format!("Reading {name}"));
+            if let Some(files) = &status.files {
+                ui.label(files);
                 ui.spinner();
                 ui.separator();
             }

@@ -15,6 +15,17 @@ pub enum Grade {
     Error,
 }
 
+impl Grade {
+    /// The word that stands before a message.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Done => "Done",
+            Self::Warning => "Warning",
+            Self::Error => "Error",
+        }
+    }
+}
+
 struct Toast {
     grade: Grade,
     text: String,
@@ -72,10 +83,11 @@ impl Toasts {
 /// Shows one message; true when it was dismissed.
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
     let palette = Palette::current(ui);
-    let (word, colour) = match toast.grade {
-        Grade::Done => ("Done", palette.text),
-        Grade::Warning => ("Warning", palette.warning),
-        Grade::Error => ("Error", palette.error),
+    let word = toast.grade.word();
+    let colour = match toast.grade {
+        Grade::Done => palette.text,
+        Grade::Warning => palette.warning,
+        Grade::Error => palette.error,
     };
     let mut dismissed = false;
     Frame::new()

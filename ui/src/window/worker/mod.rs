@@ -1,36 +1,67 @@
 //! The threads that draw the cloth: latest request wins, every send wakes the window.
 //!
-//! One thread draws. A request first gets a coarse picture, at a size that fits the time
-//! of a frame and is never interrupted, so that a drag always shows something; finer
-//! sizes follow, each once the time spent so far allows a pass of it. A newer request
-//! ends the older one. Where the cloth's full exemplars are not at hand yet, it is drawn
-//! from coarse ones, and a second thread builds the full ones meanwhile. Dropping the
+//! One thread draws. A request first shows the cloth at first sight, within milliseconds
+//! and never interrupted, so that an edit or a drag always shows something; traced
+//! pictures follow, coarse ones first, each shown once it is better than what is there
+//! (`drawing`). A newer request ends the older one. The cloth follows edits; where its
+//! exemplars are not at hand yet, a coarse cloth is drawn and a second thread builds them
+//! meanwhile (`cloths`). All of it gives way to the window (`threads`). Dropping the
 //! worker ends all.
+
+mod cloths;
+mod drawing;
+mod threads;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use pickglass::design::Design;
+use pickglass::design::{Design, WeavePattern};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::{Cancelled, Job};
-use pickglass::still::{self, Pass, PreparedCloth, StillError, StillRequest, Stop};
+use pickglass::still::{SightTables, StillError, StillRequest};
+
+use cloths::{Builder, Kept, cloth_of};
+use drawing::{Drawing, OnScreen};
+
+/// What a picture is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Aim {
+    /// The pane.
+    #[default]
+    Pane,
+    /// The pick glass over it.
+    Glass,
+}
 
 /// A picture that the window wants to see refine.
 #[derive(Clone)]
 pub struct PreviewRequest {
     pub generation: u64,
+    pub aim: Aim,
     pub design: Arc<Design>,
+    /// The design's drawdown.
+    pub drawdown: Arc<WeavePattern>,
     /// At full size, with `centre_mm` and `width_mm` given.
     pub still: StillRequest,
+    /// Nothing is on the screen: whatever was sent before is to be shown anew.
+    pub blank: bool,
 }
 
 impl PreviewRequest {
     /// Whether both look at the same prepared cloth.
     fn same_cloth(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.design, &other.design)
-            && self.still.seed == other.still.seed
+            && Arc::ptr_eq(&self.drawdown, &other.drawdown)
+            && self.still.colourway == other.still.colourway
+            && self.same_dials(other)
+    }
+
+    /// Whether the cloth of one may follow to that of the other.
+    fn same_dials(&self, other: &Self) -> bool {
+        self.still.seed == other.still.seed
             && self.still.dials == other.still.dials
+            && self.still.effects == other.still.effects
     }
 }
 
@@ -46,6 +77,9 @@ pub struct Picture {
     pub full_size: bool,
     /// Drawn from the full exemplars, not from coarse ones.
     pub full_cloth: bool,
+    /// First sight of a place that the eye moved to: the picture that is shown of the same
+    /// cloth is better and lies over it.
+    pub under: bool,
 }
 
 /// What the worker is at.
@@ -72,15 +106,10 @@ pub struct Building {
 
 /// The request at work.
 struct Current {
-    request: PreviewRequest,
     job: Job,
-    /// A newer request for the same cloth waits: the cloth is being prepared, or the
-    /// first picture drawn.
+    /// A newer request waits: first sight is being drawn.
     shielded: bool,
 }
-
-/// A cloth made from full exemplars, and for which request.
-type Prepared = (PreviewRequest, Arc<PreparedCloth>);
 
 #[derive(Default)]
 struct Shared {
@@ -89,30 +118,35 @@ struct Shared {
     /// The newest request that was begun.
     last: Option<PreviewRequest>,
     picture: Option<Picture>,
+    /// The newest picture for the pick glass.
+    glass: Option<Picture>,
     phase: Phase,
     building: Option<Building>,
     /// The full cloth that is being built.
-    builder: Option<(PreviewRequest, Job)>,
-    full: Option<Prepared>,
+    builder: Option<Builder>,
+    full: Option<Kept>,
     /// Why the full cloth cannot be built.
     failure: Option<String>,
     closing: bool,
 }
 
 impl Shared {
-    /// Ends all work except on the cloth of `keep`.
-    fn cancel_all_but(&mut self, keep: Option<&PreviewRequest>) {
-        let kept = |request: &PreviewRequest| keep.is_some_and(|keep| keep.same_cloth(request));
+    /// Ends the drawing, except of a first sight.
+    fn supersede(&mut self) {
         if let Some(current) = &self.current
-            && !(current.shielded && kept(&current.request))
+            && !current.shielded
         {
             current.job.cancel();
         }
-        if let Some((request, job)) = &self.builder
-            && !kept(request)
-        {
-            job.cancel();
-            self.builder = None;
+    }
+
+    /// Ends all work.
+    fn cancel_all(&mut self) {
+        if let Some(current) = &self.current {
+            current.job.cancel();
+        }
+        if let Some(builder) = self.builder.take() {
+            builder.job.cancel();
             self.building = None;
         }
     }
@@ -163,7 +197,7 @@ impl ClothWorker {
     /// Asks for a picture; an older request that has not begun never will.
     pub fn request(&self, request: PreviewRequest) {
         let mut shared = self.desk.lock();
-        shared.cancel_all_but(Some(&request));
+        shared.supersede();
         shared.next = Some(request);
         drop(shared);
         self.desk.bell.notify_one();
@@ -173,7 +207,7 @@ impl ClothWorker {
     pub fn stop(&self) {
         let mut shared = self.desk.lock();
         shared.next = None;
-        shared.cancel_all_but(None);
+        shared.cancel_all();
         shared.phase = Phase::Stopped;
     }
 
@@ -196,6 +230,11 @@ impl ClothWorker {
     pub fn take_picture(&self) -> Option<Picture> {
         self.desk.lock().picture.take()
     }
+
+    /// The newest picture for the pick glass that was not taken yet.
+    pub fn take_glass(&self) -> Option<Picture> {
+        self.desk.lock().glass.take()
+    }
 }
 
 impl Drop for ClothWorker {
@@ -203,13 +242,13 @@ impl Drop for ClothWorker {
         let mut shared = self.desk.lock();
         shared.closing = true;
         shared.next = None;
-        shared.cancel_all_but(None);
+        shared.cancel_all();
         drop(shared);
         self.desk.bell.notify_one();
     }
 }
 
-/// Chooses how coarse the first picture is, so that it takes about a frame.
+/// Chooses how coarse the first traced picture is, so that it takes about a frame.
 #[derive(Debug)]
 struct FirstLevel(u32);
 
@@ -229,19 +268,29 @@ impl FirstLevel {
     }
 }
 
-/// A preview ends at this error, or after this many passes.
-const GOOD_ERROR: f64 = 0.005;
-const MOST_PASSES: u32 = 4096;
-/// Voxel level of the cloth that is drawn until the full one is built.
-const COARSE_LEVEL: &str = "3";
+/// What the drawing thread keeps from one request to the next.
+struct Kit {
+    coarse: Option<Kept>,
+    first: FirstLevel,
+    tables: Arc<SightTables>,
+    /// What is on the screen, in the pane and in the glass.
+    screen: Option<OnScreen>,
+    glass: Option<OnScreen>,
+    /// Threads behind those of the window.
+    pool: Option<rayon::ThreadPool>,
+}
 
 fn work(desk: &Arc<Desk>) {
-    let mut coarse: Option<Prepared> = None;
-    let mut first = FirstLevel(5);
+    let mut kit = Kit {
+        coarse: None,
+        first: FirstLevel(5),
+        tables: Arc::default(),
+        screen: None,
+        glass: None,
+        pool: threads::pool_behind("cloth"),
+    };
     while let Some((request, job)) = next_request(desk) {
-        let outcome = catch_unwind(AssertUnwindSafe(|| {
-            serve(desk, &request, &job, &mut coarse, &mut first)
-        }));
+        let outcome = catch_unwind(AssertUnwindSafe(|| serve(desk, &request, &job, &mut kit)));
         let mut shared = desk.lock();
         shared.current = None;
         let phase = match outcome {
@@ -250,7 +299,8 @@ fn work(desk: &Arc<Desk>) {
             Ok(Err(StillError::Cancelled(_))) => Phase::Stopped,
             Ok(Err(error)) => Phase::Failed(error.to_string()),
             Err(_) => {
-                coarse = None;
+                (kit.coarse, kit.screen, kit.glass) = (None, None, None);
+                shared.full = None;
                 Phase::Failed(
                     "the picture: drawing it failed unexpectedly: try another view".to_owned(),
                 )
@@ -274,7 +324,6 @@ fn next_request(desk: &Desk) -> Option<(PreviewRequest, Job)> {
             let job = Job::new();
             shared.last = Some(request.clone());
             shared.current = Some(Current {
-                request: request.clone(),
                 job: job.clone(),
                 shielded: true,
             });
@@ -303,202 +352,46 @@ fn serve(
     desk: &Arc<Desk>,
     request: &PreviewRequest,
     job: &Job,
-    coarse: &mut Option<Prepared>,
-    first: &mut FirstLevel,
+    kit: &mut Kit,
 ) -> Result<(), StillError> {
-    let (cloth, full) = cloth_of(desk, request, job, coarse)?;
-    desk.set_phase(Phase::Refining);
-    let mut drawing = Drawing {
+    let Kit {
+        coarse,
+        first,
+        tables,
+        screen,
+        glass,
+        pool,
+    } = kit;
+    let screen = match request.aim {
+        Aim::Pane => screen,
+        Aim::Glass => glass,
+    };
+    let drawing = Drawing {
         desk,
         request,
-        cloth: &cloth,
-        full,
         job,
         begun: Instant::now(),
-        shown_paths: 0,
     };
-    let mut level = first.0;
-    let mut pass_seconds = drawing.draw(level, 0.0)?;
-    first.learn(pass_seconds * 1e3);
+    drawing.first_sight(tables, screen)?;
     lower_shield(desk)?;
-    if !full {
-        build_full(desk, request);
-    }
-    while level > 0 {
-        level -= 1;
-        // Stay until as much time was spent as one pass of the next size will take.
-        let next_pass = 16.0 * pass_seconds;
-        let left = next_pass - drawing.begun.elapsed().as_secs_f64();
-        pass_seconds = drawing.draw(level, left)?;
-    }
-    Ok(())
-}
-
-/// The best cloth at hand for a request, and whether it is the full one.
-fn cloth_of(
-    desk: &Desk,
-    request: &PreviewRequest,
-    job: &Job,
-    coarse: &mut Option<Prepared>,
-) -> Result<(Arc<PreparedCloth>, bool), StillError> {
-    let made_for = |prepared: &Prepared| {
-        let (made_for, cloth) = prepared;
-        made_for.same_cloth(request).then(|| Arc::clone(cloth))
+    let (cloth, full) = cloth_of(desk, request, job, coarse)?;
+    desk.set_phase(Phase::Refining);
+    let mut refine = || {
+        let mut level = first.0;
+        let mut pass_seconds = drawing.trace(&*cloth, full, level, 0.0, screen)?;
+        first.learn(pass_seconds * 1e3);
+        while level > 0 {
+            level -= 1;
+            // Stay until as much time was spent as one pass of the next size will take.
+            let next_pass = 16.0 * pass_seconds;
+            let left = next_pass - drawing.begun.elapsed().as_secs_f64();
+            pass_seconds = drawing.trace(&*cloth, full, level, left, screen)?;
+        }
+        Ok(())
     };
-    if let Some(cloth) = desk.lock().full.as_ref().and_then(made_for) {
-        return Ok((cloth, true));
-    }
-    if let Some(cloth) = coarse.as_ref().and_then(made_for) {
-        return Ok((cloth, false));
-    }
-    desk.set_phase(Phase::Preparing);
-    *coarse = None;
-    let mut still = request.still.clone();
-    still
-        .dials
-        .push(("level".to_owned(), COARSE_LEVEL.to_owned()));
-    let cloth = Arc::new(still::prepare(&request.design, &still, &desk.store, job)?);
-    *coarse = Some((request.clone(), Arc::clone(&cloth)));
-    Ok((cloth, false))
-}
-
-/// Builds the full cloth on a thread of its own, unless that is under way; then the last
-/// request is drawn again from it.
-fn build_full(desk: &Arc<Desk>, request: &PreviewRequest) {
-    let mut shared = desk.lock();
-    let under_way = |(request_of, _): &(PreviewRequest, Job)| request_of.same_cloth(request);
-    if shared.builder.as_ref().is_some_and(under_way) {
-        return;
-    }
-    let report_to = Arc::clone(desk);
-    let token = Job::new();
-    let job = token.clone().with_listener(move |stage, fraction| {
-        let mut shared = report_to.lock();
-        if shared.builder.is_some() {
-            shared.building = Some(Building {
-                stage: stage.to_owned(),
-                fraction,
-            });
-        }
-        drop(shared);
-        (report_to.wake)();
-    });
-    let (thread_desk, thread_request) = (Arc::clone(desk), request.clone());
-    let spawned = std::thread::Builder::new()
-        .name("exemplars".to_owned())
-        .spawn(move || {
-            let (desk, request) = (thread_desk, thread_request);
-            let built = catch_unwind(AssertUnwindSafe(|| {
-                in_own_pool(|| still::prepare(&request.design, &request.still, &desk.store, &job))
-            }));
-            let mut shared = desk.lock();
-            if job.check().is_err() {
-                return;
-            }
-            shared.builder = None;
-            shared.building = None;
-            match built {
-                Ok(Ok(cloth)) => {
-                    shared.full = Some((request, Arc::new(cloth)));
-                    if let Some(current) = &shared.current {
-                        current.job.cancel();
-                    }
-                    if shared.next.is_none() {
-                        shared.next = shared.last.clone();
-                    }
-                }
-                // The coarse cloth stays; what stands in the way of the full one is said.
-                Ok(Err(error)) => shared.failure = Some(error.to_string()),
-                Err(_) => {
-                    shared.failure = Some(
-                        "the exemplars: building them failed unexpectedly: try another sett"
-                            .to_owned(),
-                    );
-                }
-            }
-            drop(shared);
-            desk.bell.notify_one();
-            (desk.wake)();
-        });
-    if spawned.is_ok() {
-        shared.builder = Some((request.clone(), token));
-    }
-}
-
-/// Does `work` with threads of its own, so that it does not queue up before the drawing.
-fn in_own_pool<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
-    }
-}
-
-/// The pictures of one request.
-struct Drawing<'r> {
-    desk: &'r Desk,
-    request: &'r PreviewRequest,
-    cloth: &'r PreparedCloth,
-    /// Whether the cloth is the full one.
-    full: bool,
-    job: &'r Job,
-    begun: Instant,
-    /// Paths in the picture that is shown.
-    shown_paths: u64,
-}
-
-impl Drawing<'_> {
-    /// Draws at 1/2^level of the size for `seconds`, at least one pass; at level 0 until
-    /// the picture is good. Returns the seconds a pass took.
-    fn draw(&mut self, level: u32, seconds: f64) -> Result<f64, StillError> {
-        let mut still = self.request.still.clone();
-        still.width = (still.width >> level).max(1);
-        still.height = (still.height >> level).max(1);
-        still.stop = if level > 0 {
-            Stop {
-                seconds: Some(seconds.max(0.0)),
-                ..Stop::default()
-            }
-        } else {
-            Stop {
-                spp: Some(MOST_PASSES),
-                error: Some(GOOD_ERROR),
-                ..Stop::default()
-            }
-        };
-        let mut pass_seconds = 0.0;
-        let (cloth, job) = (self.cloth, self.job);
-        let (before, mut shown) = (self.shown_paths, self.shown_paths);
-        let drawing = &*self;
-        still::render(cloth, &still, job, &mut |pass| {
-            pass_seconds = pass.seconds / f64::from(pass.spp.max(1));
-            let paths = u64::from(pass.spp) * u64::from(pass.width) * u64::from(pass.height);
-            // A finer picture is shown once it is no noisier than the coarser one.
-            if 2 * paths >= before {
-                drawing.show(pass, level == 0);
-                shown = paths;
-            }
-        })?;
-        self.shown_paths = shown;
-        Ok(pass_seconds)
-    }
-
-    fn show(&self, pass: &Pass<'_>, full_size: bool) {
-        let size = [pass.width as usize, pass.height as usize];
-        if pass.rgba.len() != size[0] * size[1] * 4 || self.job.check().is_err() {
-            return;
-        }
-        let picture = Picture {
-            generation: self.request.generation,
-            image: egui::ColorImage::from_rgba_unmultiplied(size, pass.rgba),
-            still: self.request.still.clone(),
-            spp: pass.spp,
-            seconds: self.begun.elapsed().as_secs_f64(),
-            error: pass.error,
-            full_size,
-            full_cloth: self.full,
-        };
-        self.desk.lock().picture = Some(picture);
-        (self.desk.wake)();
+    match pool {
+        Some(pool) => pool.install(refine),
+        None => refine(),
     }
 }
 
@@ -522,8 +415,11 @@ mod tests {
         };
         PreviewRequest {
             generation,
+            aim: Aim::Pane,
             design: Arc::clone(design),
+            drawdown: Arc::new(design.weave()),
             still,
+            blank: false,
         }
     }
 
@@ -577,6 +473,46 @@ mod tests {
             assert!(start.elapsed() < Duration::from_secs(60), "still at work");
             std::thread::sleep(Duration::from_millis(2));
         }
+    }
+
+    #[test]
+    fn an_edit_is_seen_at_once_and_the_rest_of_the_picture_stays() {
+        let design = Opened::preset("oxford").expect("a preset").design;
+        let worker = ClothWorker::start(ExemplarStore::user(), || {}).expect("a thread");
+        let first = request(1, &design);
+        worker.request(first.clone());
+        let mut traced = None;
+        assert!(wait_for(&worker, |worker| {
+            traced = worker.take_picture().filter(|picture| picture.full_size);
+            traced.is_some()
+        }));
+        worker.stop();
+        let traced = traced.expect("a picture");
+        let mut edited = WeavePattern::clone(&first.drawdown);
+        edited.set(1, 0, !edited.get(1, 0));
+        let weave = pickglass::design::Structure::Pattern(edited.clone());
+        let changed = Design::clone(&design)
+            .with_structure(weave)
+            .expect("a design");
+        worker.request(PreviewRequest {
+            generation: 2,
+            design: Arc::new(changed),
+            drawdown: Arc::new(edited),
+            ..first.clone()
+        });
+        let mut seen = None;
+        assert!(wait_for(&worker, |worker| {
+            seen = worker
+                .take_picture()
+                .filter(|picture| picture.generation == 2);
+            seen.is_some()
+        }));
+        let seen = seen.expect("a picture");
+        // Whatever was traced between the two looks, the edit is first seen without paths.
+        assert_eq!((seen.spp, seen.under), (0, false));
+        let pixels = seen.image.pixels.iter().zip(&traced.image.pixels);
+        let changed = pixels.filter(|(a, b)| a != b).count();
+        assert!(changed > 0, "nothing was edited");
     }
 
     #[test]

@@ -1,0 +1,394 @@
+//! First sight: the cloth within milliseconds, without paths or synthesis.
+//!
+//! Every crossing shows what its neighbourhood, its yarns, the light and the side looked
+//! at make of it: the places of [`FaceTable`], in the colours that
+//! [`crate::cloth::expected`] expects. A crossing smaller than a pixel is its mean. What
+//! lies behind the cloth, hairs and the slant of a view are not shown; the path tracer
+//! brings them.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::engine::Engine;
+use super::picture::{Pass, camera, lights};
+use super::prepare::coloured;
+use super::request::LightChoice;
+use super::{StillError, StillRequest};
+use crate::cloth::colour::colours_on_top;
+use crate::cloth::{FaceRelief, FaceTable, YarnClasses, neighbourhood};
+use crate::design::{Design, Positions, WeavePattern, YarnId, YarnMap};
+use crate::exemplar::Pair;
+use crate::job::Job;
+use crate::render::{Camera, Tone, View};
+use crate::synthesis::Catalogue;
+use crate::yarn::YarnRecipe;
+
+/// Samples a pixel, each way, where crossings are smaller than pixels.
+const MOST_SAMPLES: usize = 4;
+/// Tables that are kept for the next picture.
+const MOST_TABLES: usize = 24;
+/// Pairs of yarns whose colours are worked out in advance.
+const MOST_PAIRS: usize = 1024;
+/// Share of the cloth's mean colour that the hairs of wool lay over every yarn, and what
+/// wool's hairs are, 1/mm.
+const VEIL: f32 = 0.03;
+const WOOLLY: f32 = 2.6;
+/// Threads whose yarns are asked for the cloth's mean colour.
+const MOST_ASKED: usize = 4096;
+/// Places of the curve from light to display values, and the light it reaches to.
+const CURVE: usize = 1 << 13;
+const BRIGHTEST: f32 = 2.0;
+
+/// The tables of lights and pairs of yarns, made once and kept.
+#[derive(Default)]
+pub struct SightTables {
+    catalogue: std::sync::OnceLock<Catalogue>,
+    reliefs: Mutex<Vec<(ReliefKey, Arc<FaceRelief>)>>,
+    kept: Mutex<Vec<(TableKey, Arc<FaceTable>)>>,
+}
+
+#[derive(Clone, PartialEq)]
+struct ReliefKey {
+    pair: Pair,
+    pitch: Vec2,
+    back: bool,
+}
+
+#[derive(Clone, PartialEq)]
+struct TableKey {
+    relief: ReliefKey,
+    light: LightChoice,
+}
+
+impl SightTables {
+    fn get(&self, key: &TableKey, view: View) -> Result<Arc<FaceTable>, StillError> {
+        if let Some(table) = find(&self.kept, key) {
+            return Ok(table);
+        }
+        let relief = find(&self.reliefs, &key.relief).unwrap_or_else(|| {
+            let catalogue = self.catalogue.get_or_init(Catalogue::standard);
+            let ReliefKey { pair, pitch, back } = &key.relief;
+            let relief = Arc::new(FaceRelief::new(catalogue, pair, *pitch, *back));
+            keep(&self.reliefs, &key.relief, &relief);
+            relief
+        });
+        let table = Arc::new(FaceTable::new(&relief, &lights(&key.light, view)?));
+        keep(&self.kept, key, &table);
+        Ok(table)
+    }
+}
+
+/// Things made once, by what they were made for.
+type Kept<K, T> = Mutex<Vec<(K, Arc<T>)>>;
+
+fn find<K: PartialEq, T>(kept: &Kept<K, T>, key: &K) -> Option<Arc<T>> {
+    let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    let (_, found) = kept.iter().find(|(known, _)| known == key)?;
+    Some(Arc::clone(found))
+}
+
+/// Keeps one thing more; the oldest gives way.
+fn keep<K: Clone, T>(kept: &Kept<K, T>, key: &K, thing: &Arc<T>) {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.len() >= MOST_TABLES {
+        kept.remove(0);
+    }
+    kept.push((key.clone(), Arc::clone(thing)));
+}
+
+/// Draws a design at first sight.
+pub struct FirstSight {
+    design: Arc<Design>,
+    drawdown: Arc<WeavePattern>,
+    tables: Arc<SightTables>,
+}
+
+impl FirstSight {
+    /// First sight of a design whose drawdown is `drawdown`.
+    pub fn new(design: Arc<Design>, drawdown: Arc<WeavePattern>, tables: Arc<SightTables>) -> Self {
+        Self {
+            design,
+            drawdown,
+            tables,
+        }
+    }
+}
+
+/// Everything that the picture's rows share.
+struct Sight<'d> {
+    design: &'d Design,
+    drawdown: &'d WeavePattern,
+    classes: YarnClasses,
+    tables: Vec<Arc<FaceTable>>,
+    /// By warp and weft yarn.
+    colours: Vec<[Vec3; 2]>,
+    /// What hairs lay over everything.
+    veil: Vec3,
+    ends: Positions,
+    picks: Positions,
+    level: usize,
+    samples: usize,
+    curve: Vec<u8>,
+}
+
+/// A crossing made ready.
+#[derive(Clone, Copy)]
+struct Crossing {
+    end: i64,
+    pick: i64,
+    key: u8,
+    set: u16,
+    colours: [Vec3; 2],
+}
+
+impl Engine for FirstSight {
+    fn name(&self) -> &'static str {
+        "first sight"
+    }
+
+    fn draw(
+        &self,
+        request: &StillRequest,
+        job: &Job,
+        on_pass: &mut dyn FnMut(&Pass<'_>),
+    ) -> Result<(), StillError> {
+        let begun = std::time::Instant::now();
+        let design = coloured(&self.design, request)?;
+        let camera = camera(&design, request)?;
+        let sight = self.sight(&design, request, &camera)?;
+        job.check()?;
+        let (width, height) = (request.width as usize, request.height as usize);
+        let mut rgba = vec![0u8; width * height * 4];
+        let straight = request.eye.is_none() && matches!(request.view, View::Face | View::Back);
+        let columns: Vec<(i64, f32)> = if straight {
+            sight.across(&camera, width)
+        } else {
+            Vec::new()
+        };
+        rgba.par_chunks_mut(width * 4)
+            .enumerate()
+            .for_each(|(y, row)| match straight {
+                true => sight.straight_row(&camera, y, &columns, row),
+                false => sight.slanting_row(&camera, y, row),
+            });
+        on_pass(&Pass {
+            width: request.width,
+            height: request.height,
+            rgba: &rgba,
+            spp: 0,
+            seconds: begun.elapsed().as_secs_f64(),
+            error: None,
+        });
+        Ok(())
+    }
+}
+
+impl FirstSight {
+    fn sight<'d>(
+        &'d self,
+        design: &'d Design,
+        request: &StillRequest,
+        camera: &Camera,
+    ) -> Result<Sight<'d>, StillError> {
+        let classes = YarnClasses::new(design);
+        let tables = (classes.pairs.iter())
+            .map(|pair| {
+                let key = TableKey {
+                    relief: ReliefKey {
+                        pair: pair.clone(),
+                        pitch: classes.pitch,
+                        back: request.view.turns_over(),
+                    },
+                    light: request.light.clone(),
+                };
+                self.tables.get(&key, request.view)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let yarns = design.yarns();
+        let colours = if yarns.len() * yarns.len() <= MOST_PAIRS {
+            (yarns.iter())
+                .flat_map(|warp| yarns.iter().map(move |weft| (warp, weft)))
+                .map(|(warp, weft)| colours_on_top(warp, weft))
+                .collect()
+        } else {
+            Vec::new()
+        };
+        let (ends, picks) = (design.end_positions(), design.pick_positions());
+        let pitch = |positions: &Positions| positions.repeat_mm() / f64::from(positions.threads());
+        let pixels = camera.pixels_per_mm() * pitch(&ends).min(pitch(&picks)) as f32;
+        let exposure = Tone {
+            exposure: request.exposure_ev,
+        };
+        let curve = (0..CURVE)
+            .map(|step| {
+                let light = step as f32 * BRIGHTEST / (CURVE - 1) as f32;
+                let shown = exposure.display(Vec3::splat(light), 1.0)[0];
+                super::picture::byte(shown)
+            })
+            .collect();
+        Ok(Sight {
+            design,
+            drawdown: &self.drawdown,
+            classes,
+            tables,
+            colours,
+            veil: veil(design),
+            ends,
+            picks,
+            level: FaceTable::level(pixels),
+            samples: ((1.0 / pixels).ceil() as usize).clamp(1, MOST_SAMPLES),
+            curve,
+        })
+    }
+}
+
+/// The light that hairs scatter over everything: a share of the cloth's mean colour.
+fn veil(design: &Design) -> Vec3 {
+    let mean = |map: &YarnMap| {
+        let ids: Vec<YarnId> = match map {
+            YarnMap::Order(order) => order.iter().copied().take(MOST_ASKED).collect(),
+            YarnMap::Crossings(grid) => (0..grid.ends().min(MOST_ASKED as u32))
+                .map(|end| grid.get(end, end % grid.picks()))
+                .collect(),
+        };
+        let sum: Vec3 = (ids.iter())
+            .map(|&id| {
+                let yarn = design.yarn(id);
+                let recipe = YarnRecipe::family(yarn.family, yarn.diameter());
+                yarn.colour.to_linear() * (recipe.hairs_per_mm / WOOLLY).min(1.0)
+            })
+            .sum();
+        sum / ids.len().max(1) as f32
+    };
+    let maps = design.maps();
+    (mean(&maps.warp) + mean(&maps.weft)) * 0.5 * VEIL
+}
+
+impl Sight<'_> {
+    /// End and place in it for each sample across a straight view.
+    fn across(&self, camera: &Camera, width: usize) -> Vec<(i64, f32)> {
+        let step = 1.0 / self.samples as f32;
+        (0..width * self.samples)
+            .map(|sample| {
+                let ray = camera.ray((sample as f32 + 0.5) * step, 0.5);
+                let (end, u) = self.ends.locate(ray.origin.x.into());
+                (end, u as f32)
+            })
+            .collect()
+    }
+
+    fn straight_row(&self, camera: &Camera, y: usize, columns: &[(i64, f32)], row: &mut [u8]) {
+        let mut sums = vec![(Vec3::ZERO, 0.0f32); row.len() / 4];
+        for sample in 0..self.samples {
+            let along = y as f32 + (sample as f32 + 0.5) / self.samples as f32;
+            let ray = camera.ray(0.5, along);
+            let (pick, v) = self.picks.locate(ray.origin.y.into());
+            let mut here: Option<Crossing> = None;
+            for (column, &(end, u)) in columns.iter().enumerate() {
+                let crossing = match here {
+                    Some(here) if here.end == end => Some(here),
+                    _ => self.crossing(end, pick),
+                };
+                here = crossing;
+                if let Some(crossing) = crossing {
+                    let (light, cover) = self.light(&crossing, u, v as f32);
+                    let sum = &mut sums[column / self.samples];
+                    *sum = (sum.0 + light, sum.1 + cover);
+                }
+            }
+        }
+        for (sum, pixel) in sums.into_iter().zip(row.chunks_exact_mut(4)) {
+            self.show(sum, self.samples * self.samples, pixel);
+        }
+    }
+
+    fn slanting_row(&self, camera: &Camera, y: usize, row: &mut [u8]) {
+        let mut here: Option<Crossing> = None;
+        for (x, pixel) in row.chunks_exact_mut(4).enumerate() {
+            let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5);
+            let along = -ray.origin.z / ray.direction.z;
+            if !(along > 0.0 && along.is_finite()) {
+                continue;
+            }
+            let place = ray.origin + ray.direction * along;
+            let (end, u) = self.ends.locate(place.x.into());
+            let (pick, v) = self.picks.locate(place.y.into());
+            let crossing = match here {
+                Some(here) if (here.end, here.pick) == (end, pick) => Some(here),
+                _ => self.crossing(end, pick),
+            };
+            here = crossing;
+            if let Some(crossing) = crossing {
+                self.show(self.light(&crossing, u as f32, v as f32), 1, pixel);
+            }
+        }
+    }
+
+    /// Whether the warp is up at a crossing of the endless cloth; `None`: no cloth.
+    fn up(&self, end: i64, pick: i64) -> Option<bool> {
+        let (ends, picks) = (self.drawdown.ends(), self.drawdown.picks());
+        let lattice = self.design.lattice();
+        let (end, pick) = lattice.wrap(end, pick, ends, picks)?;
+        Some(self.drawdown.get(end, pick))
+    }
+
+    fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
+        let here = self.up(end, pick)?;
+        let beside = |end, pick| self.up(end, pick).unwrap_or(here);
+        let key = neighbourhood(
+            here,
+            beside(end - 1, pick),
+            beside(end + 1, pick),
+            beside(end, pick - 1),
+            beside(end, pick + 1),
+        );
+        let (warp, weft) = (
+            self.design.warp_yarn(end, pick),
+            self.design.weft_yarn(end, pick),
+        );
+        Some(Crossing {
+            end,
+            pick,
+            key,
+            set: self.classes.set(warp, weft),
+            colours: self.colours(warp, weft),
+        })
+    }
+
+    fn colours(&self, warp: YarnId, weft: YarnId) -> [Vec3; 2] {
+        let yarns = self.design.yarns().len();
+        let known = self
+            .colours
+            .get(usize::from(warp.0) * yarns + usize::from(weft.0));
+        let colours = known
+            .copied()
+            .unwrap_or_else(|| colours_on_top(self.design.yarn(warp), self.design.yarn(weft)));
+        colours.map(|colour| colour + self.veil)
+    }
+
+    /// Light and cover of a place of a crossing.
+    #[inline]
+    fn light(&self, crossing: &Crossing, u: f32, v: f32) -> (Vec3, f32) {
+        let Some(table) = self.tables.get(usize::from(crossing.set)) else {
+            return (Vec3::ZERO, 0.0);
+        };
+        let texel = table.at(self.level, crossing.key, u, v);
+        let [warp, weft] = crossing.colours;
+        (warp * texel.warp + weft * texel.weft, texel.cover)
+    }
+
+    #[inline]
+    fn show(&self, (light, cover): (Vec3, f32), samples: usize, pixel: &mut [u8]) {
+        if !(cover > 0.0) {
+            return;
+        }
+        let places = (light / cover).clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST))
+            * ((CURVE - 1) as f32 / BRIGHTEST);
+        for (byte, place) in pixel.iter_mut().zip(places.to_array()) {
+            *byte = self.curve[(place as usize).min(CURVE - 1)];
+        }
+        pixel[3] = super::picture::byte(cover / samples as f32);
+    }
+}

@@ -1,0 +1,246 @@
+//! The cloth of a design made ready for pictures, and kept ready while it is edited.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+use glam::Vec3;
+
+use super::StillError;
+use super::picture::{SwitchedEffects, settings};
+use super::request::StillRequest;
+use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
+use crate::design::{Design, WeavePattern, Yarn};
+use crate::exemplar::ExemplarStore;
+use crate::exemplar::hairs::HairPatch;
+use crate::job::Job;
+use crate::synthesis::Catalogue;
+use crate::yarn::YarnRecipe;
+
+/// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
+pub struct PreparedCloth {
+    pub(super) design: Arc<Design>,
+    drawdown: Arc<WeavePattern>,
+    cloth: ClothVolume,
+    catalogue: Arc<Catalogue>,
+    pub(super) seconds: Vec<(String, f64)>,
+    pub(super) effects: SwitchedEffects,
+    settings: ClothSettings,
+    /// Hairs, made when first looked at.
+    hairs: OnceLock<Option<Arc<HairPatch>>>,
+}
+
+/// A cloth that follows an edit.
+pub enum Followed {
+    /// It can be looked at.
+    Ready(PreparedCloth),
+    /// It needs exemplars that were not built yet.
+    Unfinished(UnfinishedCloth),
+}
+
+/// A cloth whose exemplars are not all there: there would be holes in its picture, so
+/// none is taken before [`UnfinishedCloth::complete`].
+pub struct UnfinishedCloth {
+    cloth: PreparedCloth,
+    needed: Vec<bool>,
+}
+
+impl UnfinishedCloth {
+    /// Reads or builds what is missing.
+    ///
+    /// # Errors
+    /// When an exemplar cannot be built or the job is cancelled.
+    pub fn complete(self, store: &ExemplarStore, job: &Job) -> Result<PreparedCloth, StillError> {
+        let Self { mut cloth, needed } = self;
+        let begun = Instant::now();
+        let sets = (cloth.cloth.sets().iter())
+            .map(|set| store.complete(&cloth.catalogue, set, &needed, job))
+            .collect::<Result<Vec<_>, _>>()?;
+        let exemplars = begun.elapsed().as_secs_f64();
+        let begun = Instant::now();
+        cloth.cloth = cloth.cloth.with_sets(sets, job)?;
+        cloth.seconds = stages(exemplars, begun.elapsed().as_secs_f64());
+        Ok(cloth)
+    }
+}
+
+fn stages(exemplars: f64, synthesis: f64) -> Vec<(String, f64)> {
+    vec![
+        ("exemplars".to_owned(), exemplars),
+        ("synthesis".to_owned(), synthesis),
+    ]
+}
+
+impl PreparedCloth {
+    /// Whether an effect is simulated.
+    fn on(&self, name: &str) -> bool {
+        self.effects
+            .iter()
+            .any(|(effect, on)| effect == name && *on)
+    }
+
+    /// The hairs over `cloth`, this cloth made ready for a view; `None` where there are
+    /// none or they are switched off.
+    pub(super) fn hair_layer<'c>(&self, cloth: &'c ClothVolume) -> Option<HairLayer<'c>> {
+        if !self.on("hairs") {
+            return None;
+        }
+        let patch = self.hairs.get_or_init(|| HairLayer::patch(cloth)).clone()?;
+        Some(HairLayer::of(cloth, patch, self.hairy()))
+    }
+
+    /// Whether each yarn has hairs.
+    fn hairy(&self) -> Vec<bool> {
+        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
+        self.design
+            .yarns()
+            .iter()
+            .map(|yarn| hairs(yarn) >= 0.5)
+            .collect()
+    }
+
+    /// The cloth.
+    pub fn cloth(&self) -> &ClothVolume {
+        &self.cloth
+    }
+
+    /// The design whose cloth it is.
+    pub fn design(&self) -> &Arc<Design> {
+        &self.design
+    }
+
+    /// Puts the cloth into the yarns of `design`, the same design in another colourway,
+    /// without making anything anew. False, and nothing changed, where a yarn has another
+    /// family or size: then [`prepare`] it.
+    pub fn recolour(&mut self, design: &Arc<Design>) -> bool {
+        let alike = self.cloth.recolour_as(design);
+        if alike {
+            self.design = Arc::clone(design);
+            self.seconds.clear();
+        }
+        alike
+    }
+
+    /// The cloth of an edited design, whose drawdown is `drawdown`: only what the edit
+    /// touches is made anew, and the outcome is what [`prepare`] gives. `None` where
+    /// nothing can be taken over: another sett, other families or sizes of yarn, other
+    /// dials.
+    ///
+    /// # Errors
+    /// When a dial is wrong, there is no such colourway, or the job is cancelled.
+    pub fn follow(
+        &self,
+        design: &Arc<Design>,
+        drawdown: &Arc<WeavePattern>,
+        request: &StillRequest,
+        job: &Job,
+    ) -> Result<Option<Followed>, StillError> {
+        let (settings, _, effects) = settings(request)?;
+        if settings != self.settings {
+            return Ok(None);
+        }
+        let design = coloured(design, request)?;
+        let begun = Instant::now();
+        let followed = self.cloth.follow(&self.drawdown, &design, drawdown, job)?;
+        let Some(cloth) = followed else {
+            return Ok(None);
+        };
+        let needed = cloth.unbuilt();
+        let hairs = match design.sett() == self.design.sett() {
+            true => self.hairs.clone(),
+            false => OnceLock::new(),
+        };
+        let cloth = Self {
+            design,
+            drawdown: Arc::clone(drawdown),
+            cloth,
+            catalogue: Arc::clone(&self.catalogue),
+            seconds: stages(0.0, begun.elapsed().as_secs_f64()),
+            effects,
+            settings,
+            hairs,
+        };
+        Ok(Some(if needed.contains(&true) {
+            Followed::Unfinished(UnfinishedCloth { cloth, needed })
+        } else {
+            Followed::Ready(cloth)
+        }))
+    }
+}
+
+/// The design in the colourway that a request names.
+///
+/// # Errors
+/// When it has no such colourway.
+pub(super) fn coloured(
+    design: &Arc<Design>,
+    request: &StillRequest,
+) -> Result<Arc<Design>, StillError> {
+    match &request.colourway {
+        None => Ok(Arc::clone(design)),
+        Some(name) => Ok(Arc::new(Design::clone(design).with_colourway(name)?)),
+    }
+}
+
+/// Builds what every picture of a design needs; `request` gives the dials, the seed and
+/// the colourway.
+///
+/// # Errors
+/// When the design cannot be made into cloth, a dial is wrong, or the job is cancelled.
+pub fn prepare(
+    design: &Arc<Design>,
+    request: &StillRequest,
+    store: &ExemplarStore,
+    job: &Job,
+) -> Result<PreparedCloth, StillError> {
+    prepare_woven(design, &Arc::new(design.weave()), request, store, job)
+}
+
+/// As [`prepare`] for a design whose drawdown is known already.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_woven(
+    design: &Arc<Design>,
+    drawdown: &Arc<WeavePattern>,
+    request: &StillRequest,
+    store: &ExemplarStore,
+    job: &Job,
+) -> Result<PreparedCloth, StillError> {
+    let (settings, _, effects) = settings(request)?;
+    let design = &coloured(design, request)?;
+    let begun = Instant::now();
+    let catalogue = Arc::new(Catalogue::standard());
+    let (assignment, needed) =
+        ClothVolume::assign_weave(drawdown, design.lattice(), &catalogue, &settings, job)?;
+    let assigning = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    let classes = YarnClasses::new(design);
+    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).map_err(ClothError::from)?;
+    let sets = (classes.pairs.iter())
+        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(ClothError::from)?;
+    let exemplars = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    let albedo: Vec<Vec3> = design.yarns().iter().map(colour::albedo).collect();
+    let cloth = ClothVolume::new(
+        design,
+        Arc::clone(&catalogue),
+        classes,
+        assignment,
+        sets,
+        albedo,
+        settings,
+        job,
+    )?;
+    Ok(PreparedCloth {
+        design: Arc::clone(design),
+        drawdown: Arc::clone(drawdown),
+        cloth,
+        catalogue,
+        seconds: stages(exemplars, assigning + begun.elapsed().as_secs_f64()),
+        effects,
+        settings,
+        hairs: OnceLock::new(),
+    })
+}

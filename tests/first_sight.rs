@@ -1,0 +1,174 @@
+//! First sight resembles what the path tracer refines to.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+mod picture_likeness;
+
+use std::sync::Arc;
+
+use pickglass::design::{Design, WeavePattern};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::presets;
+use pickglass::job::Job;
+use pickglass::render::View;
+use pickglass::still::{Engine, FirstSight, LightChoice, SightTables, StillRequest, Stop, prepare};
+use picture_likeness::{Looked, mean_delta_e, ssim};
+
+fn design(name: &str) -> Arc<Design> {
+    Arc::new(presets::design(name).unwrap().unwrap())
+}
+
+fn request(view: View, light: &str) -> StillRequest {
+    StillRequest {
+        width: 600,
+        height: 400,
+        view,
+        light: LightChoice::Preset(light.to_owned()),
+        dials: vec![("level".to_owned(), "1".to_owned())],
+        stop: Stop {
+            spp: Some(16),
+            ..Stop::default()
+        },
+        ..StillRequest::default()
+    }
+}
+
+/// The last picture of an engine. Where `PICKGLASS_PICTURES` names a folder, it is kept.
+fn picture(engine: &dyn Engine, request: &StillRequest, name: &str) -> Vec<u8> {
+    let mut rgba = Vec::new();
+    engine
+        .draw(request, &Job::new(), &mut |pass| {
+            rgba = pass.rgba.to_vec();
+            if engine.name() == "first sight" {
+                println!("{name}: first sight in {:.1} ms", pass.seconds * 1e3);
+            }
+        })
+        .unwrap();
+    if let Some(folder) = std::env::var_os("PICKGLASS_PICTURES") {
+        let path = std::path::Path::new(&folder).join(format!("{name} {}.png", engine.name()));
+        image::save_buffer(
+            path,
+            &rgba,
+            request.width,
+            request.height,
+            image::ColorType::Rgba8,
+        )
+        .unwrap();
+    }
+    rgba
+}
+
+fn first(design: &Arc<Design>) -> FirstSight {
+    let drawdown = Arc::new(design.weave());
+    FirstSight::new(
+        Arc::clone(design),
+        drawdown,
+        Arc::new(SightTables::default()),
+    )
+}
+
+fn looked(request: &StillRequest, rgba: &[u8]) -> Looked {
+    Looked::at(request.width, request.height, rgba, 4)
+}
+
+#[test]
+fn first_sight_resembles_the_converged_picture() {
+    let mut faults = Vec::new();
+    for (name, view, light) in [
+        ("default", View::Face, "day"),
+        ("denim", View::Face, "day"),
+        ("damask", View::Face, "day"),
+        ("herringbone", View::Face, "raking-left"),
+        ("tweed", View::Back, "day"),
+        ("oxford", View::Face, "overcast"),
+    ] {
+        let design = design(name);
+        let mut request = request(view, light);
+        // About what a pane shows: twelve pixels a crossing.
+        request.width_mm = Some(50.0 * design.sett().ends.mean_pitch_mm());
+        let cloth = prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+        let traced = looked(&request, &picture(&cloth, &request, name));
+        let seen = looked(&request, &picture(&first(&design), &request, name));
+        let (likeness, colour) = (ssim(&seen, &traced), mean_delta_e(&seen, &traced));
+        println!("{name} {view:?} {light}: SSIM {likeness:.3}, ΔE {colour:.2}");
+        if likeness < 0.8 || colour > 5.0 {
+            faults.push(format!("{name}: {likeness:.3} {colour:.2}"));
+        }
+        // Control: the same cloth half a repeat away does not resemble it, nor does the
+        // cloth in other light.
+        let mut moved = request.clone();
+        let pitch = design.sett().ends.mean_pitch_mm();
+        moved.centre_mm = Some([
+            design.end_positions().repeat_mm() as f32 * 0.5 + 1.5 * pitch,
+            design.pick_positions().repeat_mm() as f32 * 0.5,
+        ]);
+        let other = looked(&request, &picture(&first(&design), &moved, "control"));
+        assert!(ssim(&other, &traced) < likeness, "{name}: the control");
+    }
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn an_edit_changes_only_what_is_beside_it() {
+    let design = design("oxford");
+    let request = request(View::Face, "day");
+    let drawdown = design.weave();
+    let mut edited: WeavePattern = drawdown.clone();
+    edited.set(0, 0, !drawdown.get(0, 0));
+    let tables = Arc::new(SightTables::default());
+    let draw = |drawdown: WeavePattern| {
+        let sight = FirstSight::new(Arc::clone(&design), Arc::new(drawdown), Arc::clone(&tables));
+        picture(&sight, &request, "edit")
+    };
+    let (before, after) = (draw(drawdown.clone()), draw(edited));
+    let changed = before
+        .chunks(4)
+        .zip(after.chunks(4))
+        .filter(|(a, b)| a != b);
+    let share = changed.count() as f64 / (600.0 * 400.0);
+    // The crossing and its four neighbours, of 4 × 2.
+    assert!((0.2..0.75).contains(&share), "{share}");
+    assert!(before == draw(drawdown));
+}
+
+#[test]
+fn every_view_and_wild_places_give_a_picture() {
+    let design = design("twill-satin");
+    for view in View::ALL {
+        let sight = first(&design);
+        for width_mm in [0.011, 3.0, 9_000.0] {
+            for centre in [[0.0, 0.0], [-1e6, 1e6], [f32::NAN, 0.0]] {
+                let mut request = request(view, "day");
+                (request.width, request.height) = (31, 17);
+                request.width_mm = Some(width_mm);
+                request.centre_mm = Some(centre);
+                let rgba = picture(&sight, &request, "wild");
+                assert_eq!(rgba.len(), 31 * 17 * 4);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_large_jacquard_is_seen_whole() {
+    // 900 × 1500 crossings of satins, seen whole and from near.
+    let weave = WeavePattern::from_fn(900, 1500, |end, pick| {
+        let warp_faced = ((end / 90) + (pick / 150)) % 2 == 0;
+        ((end * 3 + 8 - pick % 8) % 8 == 0) != warp_faced
+    });
+    let silk = design("silk-satin");
+    let large = Design::clone(&silk)
+        .with_structure(pickglass::design::Structure::Pattern(weave))
+        .unwrap();
+    let sight = first(&Arc::new(large.clone()));
+    let mut request = request(View::Face, "day");
+    (request.width, request.height) = (900, 700);
+    for width_mm in [40.0, large.end_positions().repeat_mm() as f32] {
+        request.width_mm = Some(width_mm);
+        // The first picture makes the tables, the second has them.
+        for _ in 0..2 {
+            let rgba = picture(&sight, &request, &format!("900 × 1500, {width_mm:.0} mm"));
+            let covered = rgba.chunks(4).filter(|pixel| pixel[3] > 200).count();
+            assert!(covered > 900 * 700 * 9 / 10, "{covered}");
+        }
+    }
+}

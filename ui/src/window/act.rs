@@ -1,0 +1,136 @@
+//! What the actions of the panes do: the one place where the document changes.
+
+use pickglass::edit::{Change, Edit, EditError, moved};
+
+use super::action::{Action, Button, Mark};
+use super::app::App;
+use super::panes::Pane;
+use super::session::Session;
+use super::toasts::Grade;
+
+impl App {
+    /// Does what the panes asked for, in order.
+    pub(super) fn act(&mut self, ctx: &egui::Context, actions: Vec<Action>) {
+        let before = (self.hover.take(), self.draft.mark);
+        self.draft.mark = Mark::Nothing;
+        for action in actions {
+            match action {
+                Action::Edit(edit) => self.edit(*edit),
+                Action::Begin(name) => self.begin(&name),
+                Action::Move { cells, by, behind } => {
+                    let edits = self
+                        .session
+                        .as_ref()
+                        .map(|session| moved(&session.document, &cells, by, behind));
+                    edits.into_iter().flatten().for_each(|edit| self.edit(edit));
+                }
+                Action::Restart => self.rework(|session| Some(session.document.restart())),
+                Action::Finish => self.finish(),
+                Action::Cancel => self.rework(|session| Some(session.document.cancel())),
+                Action::GoTo(entry) => self.rework(|session| session.document.go_to(entry)),
+                Action::Command(command) => self.obey(ctx, command),
+                Action::Hover(at) => self.hover = at.or(self.hover),
+                Action::Mark(mark) => self.draft.mark = mark,
+                Action::LookAt { end, pick } => {
+                    self.draft.look_at(end, pick);
+                    self.layout.bring(Pane::Draft);
+                }
+                Action::PaintYarn(yarn, button) => {
+                    self.draft.yarns[usize::from(button == Button::Second)] = yarn;
+                }
+                Action::PaintRegion(region, button) => {
+                    self.draft.regions[usize::from(button == Button::Second)] = region;
+                }
+                Action::Limits(limits) => self.draft.limits = limits,
+                Action::Show(pane) => self.layout.bring(pane),
+                Action::Say(grade, text, kept) => self.say(grade, text, kept),
+            }
+        }
+        // The other views mark it in the next frame.
+        if before != (self.hover, self.draft.mark) {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Begins a gesture: what follows is one entry of the history.
+    pub(super) fn begin(&mut self, name: &str) {
+        if let Some(session) = &mut self.session {
+            session.document.begin(name);
+        }
+    }
+
+    /// Ends the gesture.
+    pub(super) fn finish(&mut self) {
+        if let Some(session) = &mut self.session {
+            session.document.finish();
+        }
+    }
+
+    /// Tells the person, and keeps it in the log.
+    pub(super) fn say(&mut self, grade: Grade, text: impl Into<String>, kept: impl Into<String>) {
+        let (text, kept) = (text.into(), kept.into());
+        self.panes.log.add(grade, &text, &kept);
+        self.toasts.say(grade, text, kept);
+    }
+
+    pub(super) fn warn(&mut self, text: impl Into<String>, kept: &str) {
+        self.say(Grade::Warning, text, kept);
+    }
+
+    /// Does an edit, or asks what to do instead where it is refused.
+    pub(super) fn edit(&mut self, edit: Edit) {
+        let Some(session) = &mut self.session else {
+            return;
+        };
+        let edit = match edit {
+            Edit::Paint { .. } | Edit::Place { .. } | Edit::Flip(_)
+                if self.asking.derive_always && super::draft::is_shaft_draft(&session.document) =>
+            {
+                Edit::DeriveDraft {
+                    after: Some(Box::new(edit)),
+                }
+            }
+            other => other,
+        };
+        // Only what a question could be about is kept for it.
+        let refused = matches!(
+            edit,
+            Edit::Paint { .. } | Edit::Place { .. } | Edit::Flip(_) | Edit::PaintRegion { .. }
+        )
+        .then(|| edit.clone());
+        match session.document.apply(edit) {
+            Ok(change) => self.changed(&change),
+            Err(error) => self.refused(&error, refused),
+        }
+    }
+
+    pub(super) fn refused(&mut self, error: &EditError, edit: Option<Edit>) {
+        self.draft.give_up();
+        self.rework(|session| Some(session.document.cancel()));
+        let remedies = edit.map_or_else(Vec::new, |edit| error.remedies(&edit));
+        if remedies.is_empty() {
+            self.say(Grade::Error, error.to_string(), "The design is as it was.");
+        } else {
+            self.asking.about_refused(error.to_string(), remedies);
+        }
+    }
+
+    /// Goes to another state of the document.
+    pub(super) fn rework(&mut self, go: impl FnOnce(&mut Session) -> Option<Change>) {
+        if let Some(change) = self.session.as_mut().and_then(go) {
+            self.changed(&change);
+        }
+    }
+
+    /// Lets every view know what to draw again.
+    pub(super) fn changed(&mut self, change: &Change) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        if !change.is_nothing() {
+            // What was drawn in this frame shows the state before.
+            self.ctx.request_repaint();
+            self.draft.changed(&session.document, change);
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What lies over the cloth, driven by pointer, keys and accessible labels.
+
+use std::time::{Duration, Instant};
+
+use egui::{Key, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pickglass::edit::Document;
+use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::presets;
+use pickglass::still::{EffectBase, EffectChoice, LightChoice};
+
+use crate::window::preview::{Preview, PreviewSettings};
+
+/// A cloth view and its document.
+struct Bench {
+    preview: Option<Preview>,
+    document: Document,
+}
+
+fn bench() -> Harness<'static, Bench> {
+    let design = presets::design("oxford")
+        .expect("a preset")
+        .expect("a design");
+    let bench = Bench {
+        preview: None,
+        document: Document::new(design),
+    };
+    Harness::builder().with_size([640.0, 480.0]).build_ui_state(
+        |ui, bench: &mut Bench| {
+            let preview = bench.preview.get_or_insert_with(|| {
+                let dial = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+                let settings = PreviewSettings {
+                    store: ExemplarStore::user(),
+                    effects: EffectChoice {
+                        base: EffectBase::None,
+                        changes: Vec::new(),
+                    },
+                    dials: vec![dial("pass-spp", "1"), dial("level", "4")],
+                };
+                Preview::new(ui.ctx(), settings).expect("a worker")
+            });
+            let mut actions = Vec::new();
+            preview.poll(&ui.ctx().clone(), &mut actions);
+            preview.show(ui, &bench.document, &mut actions);
+        },
+        bench,
+    )
+}
+
+fn wait(harness: &mut Harness<'_, Bench>, what: &str, done: impl Fn(&Preview) -> bool) {
+    let start = Instant::now();
+    while !harness.state().preview.as_ref().is_some_and(&done) {
+        assert!(
+            start.elapsed() < Duration::from_secs(120),
+            "waited in vain for {what}"
+        );
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn shown(harness: &mut Harness<'_, Bench>) {
+    wait(harness, "a picture", |preview| preview.pane.shown.is_some());
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_glass_shows_while_its_key_is_held() {
+    let mut harness = bench();
+    shown(&mut harness);
+    harness.hover_at(pos2(300.0, 240.0));
+    harness.step();
+    harness.key_down(Key::Q);
+    harness.step();
+    wait(&mut harness, "the glass", |preview| {
+        preview.glass_has_picture()
+    });
+    harness.key_up(Key::Q);
+    harness.run_steps(2);
+    assert!(
+        !harness
+            .state()
+            .preview
+            .as_ref()
+            .is_some_and(Preview::glass_has_picture)
+    );
+    // The pane goes on with what it showed.
+    shown(&mut harness);
+}
+
+#[test]
+fn a_picture_is_kept_and_compared_with() {
+    let mut harness = bench();
+    shown(&mut harness);
+    harness.get_by_label("Keep").click();
+    harness.run_steps(2);
+    assert!(
+        harness
+            .query_by_label("Border to the kept picture")
+            .is_some()
+    );
+    harness.get_by_label("Forget kept").click();
+    harness.run_steps(2);
+    assert!(
+        harness
+            .query_by_label("Border to the kept picture")
+            .is_none()
+    );
+}
+
+#[test]
+fn the_cloth_is_turned_over_and_the_lamp_moved() {
+    let mut harness = bench();
+    shown(&mut harness);
+    harness.get_by_label("See back").click();
+    wait(&mut harness, "the back", |preview| {
+        preview.view.turns_over()
+    });
+    harness.run_steps(2);
+    harness.get_by_label_contains("Lamp: ").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowLeft);
+    wait(
+        &mut harness,
+        "other light",
+        |preview| matches!(preview.light, LightChoice::Sun(heading) if heading.azimuth == 140),
+    );
+}

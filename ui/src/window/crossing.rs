@@ -1,0 +1,72 @@
+//! One crossing in words.
+
+use pickglass::design::{FaceFloat, float_through};
+use pickglass::edit::Document;
+
+use super::draft::end_number;
+use crate::command_table::DraftLayout;
+
+/// Floats are counted up to this many threads; what runs further snags at any sett.
+const LONGEST: u32 = 999;
+
+/// The crossing (end, pick) of the endless cloth as weavers would say it, counted from 1 as
+/// the layout counts; `None` where there is no cloth.
+pub fn describe(
+    document: &Document,
+    (end, pick): (i64, i64),
+    arrangement: DraftLayout,
+) -> Option<String> {
+    let (design, drawdown) = (document.design(), document.drawdown());
+    let lattice = design.lattice();
+    let (home_end, home_pick) = lattice.wrap(end, pick, drawdown.ends(), drawdown.picks())?;
+    let FaceFloat { warp, length, .. } = float_through(drawdown, lattice, (end, pick), LONGEST)?;
+    let name = |yarn| design.yarn(yarn).name.as_str();
+    let (end_yarn, pick_yarn) = (
+        name(design.warp_yarn(end, pick)),
+        name(design.weft_yarn(end, pick)),
+    );
+    let (above, below) = if warp {
+        (end_yarn, pick_yarn)
+    } else {
+        (pick_yarn, end_yarn)
+    };
+    let over = match length {
+        LONGEST => "never bound".to_owned(),
+        1 => "over 1".to_owned(),
+        length => format!("float over {length}"),
+    };
+    let ends = i64::from(drawdown.ends());
+    let end = end_number(i64::from(home_end), ends, arrangement);
+    let pick = home_pick + 1;
+    Some(format!(
+        "end {end} · pick {pick} · {above} over {below} · {over}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::opened::Opened;
+    use pickglass::design::Design;
+
+    #[test]
+    fn a_crossing_is_told_as_a_weaver_would() {
+        let opened = Opened::preset("oxford").expect("a preset");
+        let document = Document::new(Design::clone(&opened.design));
+        let ends = i64::from(opened.design.ends());
+        let told = |at, arrangement| describe(&document, at, arrangement).expect("cloth");
+        let plain = told((0, 0), DraftLayout::Scandinavian);
+        assert!(
+            plain.starts_with("end 1 · pick 1 · ") && plain.contains(" over "),
+            "{plain}"
+        );
+        let us = told((0, 0), DraftLayout::Us);
+        assert!(us.starts_with(&format!("end {ends} · pick 1 · ")), "{us}");
+        // The next repeat is the same crossing, in whatever yarn.
+        let next = told((ends, 0), DraftLayout::Us);
+        assert!(
+            next.starts_with(&format!("end {ends} · pick 1 · ")),
+            "{next}"
+        );
+    }
+}

@@ -1,0 +1,250 @@
+//! What is open: designs that come and go, what the threads finished, and the questions in
+//! between.
+
+use egui::ViewportCommand;
+use pickglass::edit::Clip;
+
+use super::app::App;
+use super::asking::{Answer, Next};
+use super::export::Exported;
+use super::files::{FileEvent, Writing};
+use super::session::Session;
+use super::toasts::Grade;
+use super::volume;
+use crate::command_table::Tool;
+use crate::opened::Opened;
+
+impl App {
+    /// Opens a design.
+    pub(super) fn take_design(&mut self, opened: &Opened) {
+        for warning in &opened.warnings {
+            self.warn(warning.clone(), "The design was opened.");
+        }
+        if let Some(path) = &opened.path {
+            self.settings.opened(path);
+            self.write_settings();
+        }
+        self.show_session(Some(Session::of(opened)));
+    }
+
+    /// Shows another document, or the start page; the copy of what was open before is not
+    /// needed any more.
+    pub(super) fn show_session(&mut self, session: Option<Session>) {
+        self.autosave.leave();
+        self.session = session;
+        self.draft.forget();
+        self.preview.forget();
+        self.asking.derive_always = false;
+    }
+
+    /// Takes what the threads finished, and files that were dropped.
+    pub(super) fn pick_up(&mut self, ctx: &egui::Context) {
+        for problem in self.autosave.poll() {
+            self.warn(problem, "The open design is not touched by this.");
+        }
+        let session = self.session.as_ref();
+        self.files.write_chosen(ctx, || session.map(writing));
+        while let Some(event) = self.files.poll(ctx) {
+            self.file_event(ctx, event);
+        }
+        match self.export.poll() {
+            Some(Exported::Written(path, report)) => {
+                let text = format!("Wrote {}", path.display());
+                let kept = format!("{} × {}, {} spp", report.width, report.height, report.spp);
+                self.say(Grade::Done, text, kept);
+            }
+            Some(Exported::Cancelled) => {
+                self.say(
+                    Grade::Done,
+                    "The export was cancelled.",
+                    "No file was written.",
+                );
+            }
+            Some(Exported::Failed(error)) => {
+                self.say(
+                    Grade::Error,
+                    error,
+                    "An earlier file of that name is unchanged.",
+                );
+            }
+            None => {}
+        }
+        match self.volume.poll() {
+            Some(volume::Exported::Written { path, about }) => {
+                self.say(Grade::Done, format!("Wrote {}", path.display()), about);
+            }
+            Some(volume::Exported::Cancelled) => {
+                self.say(
+                    Grade::Done,
+                    "The export was cancelled.",
+                    "No file was written.",
+                );
+            }
+            Some(volume::Exported::Failed(error)) => {
+                self.say(Grade::Error, error, "No file was written.");
+            }
+            None => {}
+        }
+        let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
+        if let Some(file) = dropped.first() {
+            self.leave_for(ctx, Next::File(file.path().to_path_buf()));
+        }
+        let title = (self.session.as_ref()).map_or("Pickglass".to_owned(), Session::title);
+        if self.told_title != title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.told_title = title;
+        }
+    }
+
+    pub(super) fn file_event(&mut self, ctx: &egui::Context, event: FileEvent) {
+        match event {
+            FileEvent::Opened(opened) => self.take_design(&opened),
+            FileEvent::Recovered {
+                design,
+                lost,
+                copy,
+                original,
+            } => {
+                self.show_session(Some(Session::unsaved(*design, original)));
+                self.autosave.reopened(copy);
+                match lost {
+                    Some(lost) => self.warn(lost, "Everything before that was recovered."),
+                    None => self.say(Grade::Done, "Recovered.", "Save it to keep it."),
+                }
+            }
+            FileEvent::OpenFailed(error) => {
+                let kept = match &self.session {
+                    Some(session) => format!("{} is still open.", session.name()),
+                    None => String::new(),
+                };
+                self.say(Grade::Error, error, kept);
+            }
+            FileEvent::Saved { path, state } => {
+                if let Some(session) = &mut self.session {
+                    session.document.mark_saved_as(state);
+                    session.path = Some(path.clone());
+                }
+                self.settings.opened(&path);
+                self.write_settings();
+                self.say(Grade::Done, format!("Saved {}", path.display()), "");
+                if let Some(next) = self.asking.after_save.take() {
+                    self.go(ctx, next);
+                }
+            }
+            FileEvent::Exported { path, lost } if lost.is_empty() => {
+                self.say(
+                    Grade::Done,
+                    format!("Wrote {}", path.display()),
+                    "Nothing was left out.",
+                );
+            }
+            FileEvent::Exported { path, lost } => {
+                let text = format!("Wrote {}, without {}", path.display(), lost.join("; "));
+                self.warn(text, "The design itself is as it was.");
+            }
+            FileEvent::SaveFailed(error) => {
+                self.asking.after_save = None;
+                self.say(
+                    Grade::Error,
+                    error,
+                    "The earlier file is as it was, and the design still open.",
+                );
+            }
+        }
+    }
+
+    /// Leaves the open design for something else, after asking if work would be lost.
+    pub(super) fn leave_for(&mut self, ctx: &egui::Context, next: Next) {
+        let modified =
+            (self.session.as_ref()).is_some_and(|session| session.document.is_modified());
+        if modified {
+            self.asking.about_unsaved(next);
+        } else {
+            self.go(ctx, next);
+        }
+    }
+
+    pub(super) fn go(&mut self, ctx: &egui::Context, next: Next) {
+        match next {
+            Next::Close => {
+                self.may_close = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+            Next::Start => self.show_session(None),
+            Next::New => self.files.open_blank(ctx),
+            Next::Preset(name) => self.files.open_preset(ctx, name),
+            Next::File(path) => self.files.open(ctx, path),
+            Next::Ask => self.files.ask(ctx),
+            Next::AskPath => self.files.type_path("Type or paste it; Enter opens it."),
+        }
+    }
+
+    /// Holds the window open while there is unsaved work.
+    pub(super) fn ask_before_closing(&mut self, ctx: &egui::Context) {
+        let closing = ctx.input(|input| input.viewport().close_requested());
+        let modified =
+            (self.session.as_ref()).is_some_and(|session| session.document.is_modified());
+        if closing && modified && !self.may_close {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.asking.about_unsaved(Next::Close);
+        }
+    }
+
+    /// Shows the open question and does what it is answered with.
+    pub(super) fn asking_ui(&mut self, ctx: &egui::Context) {
+        let name = self
+            .session
+            .as_ref()
+            .map_or("", |session| session.name())
+            .to_owned();
+        match self.asking.show(ctx, &name) {
+            Some(Answer::Save(next)) => {
+                self.asking.after_save = Some(next);
+                self.save(ctx, false);
+            }
+            Some(Answer::Discard(next)) => self.go(ctx, next),
+            Some(Answer::Instead { edit, always }) => {
+                self.asking.derive_always |= always;
+                self.edit(edit);
+            }
+            Some(Answer::Stamp(weave)) => {
+                self.draft.copy(Clip::of_weave(&weave));
+                self.draft.take_tool(ctx, Tool::Stamp);
+            }
+            Some(Answer::Filled(name, edits)) => {
+                self.begin(name);
+                edits.into_iter().for_each(|edit| self.edit(edit));
+                self.finish();
+            }
+            None => {}
+        }
+        // A save that was given up leaves nothing waiting for it.
+        if !self.files.is_asking() && !self.files.is_writing() {
+            self.asking.after_save = None;
+        }
+    }
+
+    pub(super) fn save(&mut self, ctx: &egui::Context, under_new_name: bool) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        match &session.path {
+            Some(path) if !under_new_name => {
+                let path = path.clone();
+                self.files.save(ctx, path, writing(session));
+            }
+            _ => {
+                let proposed = session.file_name("ron");
+                self.files.ask_save(ctx, proposed);
+            }
+        }
+    }
+}
+
+/// What is to be written: the design as it is now.
+fn writing(session: &Session) -> Writing {
+    Writing {
+        design: session.design(),
+        state: session.document.state_id(),
+    }
+}

@@ -1,0 +1,118 @@
+//! What the commands of menus, keys and palette do.
+
+use egui::ViewportCommand;
+use pickglass::still::LightChoice;
+
+use super::app::App;
+use super::asking::Next;
+use crate::command_table::Command;
+
+impl App {
+    /// Lights the cloth by a preset.
+    pub(super) fn set_light(&mut self, preset: &str) {
+        self.preview.light = LightChoice::Preset(preset.to_owned());
+    }
+
+    /// Does a command.
+    pub(super) fn obey(&mut self, ctx: &egui::Context, command: Command) {
+        if !self.situation().allows(command) {
+            return;
+        }
+        match command {
+            Command::New => self.leave_for(ctx, Next::New),
+            Command::Open => self.leave_for(ctx, Next::Ask),
+            Command::OpenPath => self.leave_for(ctx, Next::AskPath),
+            Command::Start => self.leave_for(ctx, Next::Start),
+            Command::Save => self.save(ctx, false),
+            Command::SaveAs => self.save(ctx, true),
+            Command::ExportStill => {
+                if let (Some(session), Some(asked)) = (&self.session, self.preview.asked()) {
+                    self.export.ask(session.design(), asked.clone());
+                }
+            }
+            Command::ExportVolume => {
+                if let Some(session) = &self.session {
+                    let selected = (self.draft.selection())
+                        .map(|rect| [rect.end, rect.pick, rect.ends, rect.picks]);
+                    let path = session.file_name("vdb");
+                    self.volume.ask(session.design(), selected, path);
+                }
+            }
+            Command::ExportDraft => {
+                if let Some(session) = &self.session {
+                    let proposed = session.file_name("wif");
+                    self.files.ask_export(ctx, proposed);
+                }
+            }
+            Command::Print => {
+                if let Some(session) = &self.session {
+                    let proposed = session.file_name("pdf");
+                    self.files.ask_print(ctx, proposed);
+                }
+            }
+            // The close is asked about where every other close is.
+            Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            Command::Undo => self.step_back(),
+            Command::Redo => self.rework(|session| session.document.redo()),
+            Command::Theme => {
+                let theme = match ctx.theme() {
+                    egui::Theme::Dark => egui::Theme::Light,
+                    egui::Theme::Light => egui::Theme::Dark,
+                };
+                ctx.set_theme(theme);
+            }
+            Command::Palette => self.palette.open(),
+            Command::Shortcuts => self.show_shortcuts = true,
+            Command::ResetLayout => self.layout.reset(),
+            Command::NextPane => {
+                if self.draft.has_focus(ctx) {
+                    self.preview.focus(ctx);
+                } else {
+                    self.draft.focus(ctx);
+                }
+            }
+            Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut
+                if !self.preview.in_use() =>
+            {
+                self.draft.obey(command);
+            }
+            Command::Use(tool) => self.draft.take_tool(ctx, tool),
+            Command::SwapColours => {
+                self.draft.yarns.swap(0, 1);
+                self.draft.regions.swap(0, 1);
+            }
+            _ => {
+                if !self.preview.obey(command) && !self.toggle(command) {
+                    self.weave(ctx, command);
+                }
+            }
+        }
+    }
+
+    pub(super) fn step_back(&mut self) {
+        self.draft.give_up();
+        self.rework(|session| session.document.undo());
+    }
+
+    /// Commands that turn something on or off; false for any other.
+    pub(super) fn toggle(&mut self, command: Command) -> bool {
+        let (show, symmetry) = (&mut self.draft.show, &mut self.draft.symmetry);
+        let flag = match command {
+            Command::Structure => &mut show.structure_alone,
+            Command::GridLines => &mut show.grid_lines,
+            Command::LongFloats => &mut show.long_floats,
+            Command::Ghosts => &mut show.ghosts,
+            Command::Navigator => &mut show.navigator,
+            Command::SymmetryAcross => &mut symmetry[0],
+            Command::SymmetryAlong => &mut symmetry[1],
+            Command::Arrange(arrangement) => {
+                show.arrangement = arrangement;
+                self.draft.obey(Command::Fit);
+                return true;
+            }
+            _ => return false,
+        };
+        *flag = !*flag;
+        true
+    }
+}

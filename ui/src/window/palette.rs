@@ -1,0 +1,117 @@
+//! The palette: type a few letters of what you want to do.
+
+use egui::{Id, Key, Modal, RichText, ScrollArea};
+
+use super::menu::Situation;
+use crate::command_table::{Command, Row, TABLE, match_rank};
+use crate::tokens::{self, Palette as Colours};
+
+/// The palette while it is open.
+#[derive(Default)]
+pub struct CommandPalette {
+    open: bool,
+    typed: String,
+    chosen: usize,
+    focused: bool,
+}
+
+impl CommandPalette {
+    /// Opens it with nothing typed.
+    pub fn open(&mut self) {
+        *self = Self {
+            open: true,
+            ..Self::default()
+        };
+    }
+
+    /// Shows it; returns the command that was chosen.
+    pub fn show(&mut self, ctx: &egui::Context, situation: &Situation<'_>) -> Option<Command> {
+        if !self.open {
+            return None;
+        }
+        let rows = matching(&self.typed);
+        let (up, down, enter) = ctx.input_mut(|input| {
+            let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
+            (
+                pressed(Key::ArrowUp),
+                pressed(Key::ArrowDown),
+                pressed(Key::Enter),
+            )
+        });
+        self.chosen = (self.chosen + usize::from(down))
+            .saturating_sub(usize::from(up))
+            .min(rows.len().saturating_sub(1));
+        let moved = up || down;
+        let mut command = (enter)
+            .then(|| rows.get(self.chosen))
+            .flatten()
+            .filter(|row| situation.allows(row.command))
+            .map(|row| row.command);
+        let modal = Modal::new(Id::unique("palette")).show(ctx, |ui| {
+            ui.set_width(1.5 * tokens::TOAST_WIDTH);
+            let field = ui.add(
+                egui::TextEdit::singleline(&mut self.typed)
+                    .hint_text("What do you want to do?")
+                    .desired_width(f32::INFINITY),
+            );
+            field.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Command to find")
+            });
+            if !self.focused {
+                field.request_focus();
+                self.focused = true;
+            }
+            if field.changed() {
+                self.chosen = 0;
+            }
+            ui.add_space(tokens::GRID);
+            let quiet = Colours::current(ui).quiet;
+            if rows.is_empty() {
+                ui.label(RichText::new("No command is called this.").color(quiet));
+            }
+            ScrollArea::vertical()
+                .max_height(tokens::LIST_HEIGHT * 1.5)
+                .show(ui, |ui| {
+                    for (index, row) in rows.iter().enumerate() {
+                        let clicked = row_ui(ui, row, index == self.chosen, moved, situation);
+                        command = clicked.then_some(row.command).or(command);
+                    }
+                });
+        });
+        if command.is_some() || modal.should_close() {
+            self.open = false;
+        }
+        command
+    }
+}
+
+fn row_ui(
+    ui: &mut egui::Ui,
+    row: &Row,
+    chosen: bool,
+    moved: bool,
+    situation: &Situation<'_>,
+) -> bool {
+    let mut button = egui::Button::selectable(chosen, row.label.trim_end_matches('…'))
+        .min_size(egui::vec2(ui.available_width(), 0.0));
+    if let Some(shortcut) = row.shortcuts.first() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
+    }
+    let response = ui
+        .add_enabled(situation.allows(row.command), button)
+        .on_hover_text(row.tip);
+    if chosen && moved {
+        response.scroll_to_me(None);
+    }
+    response.clicked()
+}
+
+/// The rows that answer what was typed, the best first.
+fn matching(typed: &str) -> Vec<&'static Row> {
+    let mut rows: Vec<_> = (TABLE.iter())
+        .filter(|row| row.command != Command::Palette)
+        .filter_map(|row| Some((match_rank(row, typed)?, row)))
+        .collect();
+    rows.sort_by_key(|&(rank, _)| rank);
+    rows.into_iter().map(|(_, row)| row).collect()
+}

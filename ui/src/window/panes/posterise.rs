@@ -1,0 +1,394 @@
+//! Posterising: the picture beside its map, and what it is made with; live, on a thread of
+//! its own.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use egui::{DragValue, RichText, ScrollArea, TextEdit, TextureHandle, TextureOptions};
+use pickglass::design::{Design, Regions, SourceImage, Srgb, Structure};
+use pickglass::edit::{Document, Edit};
+use pickglass::formats::photo;
+use pickglass::posterise::{Fit, PosteriseSettings, Posterised, posterise};
+
+use super::later::Later;
+use super::regions::RegionList;
+use crate::tokens::{self, Palette};
+use crate::window::action::Action;
+use crate::window::icons;
+use crate::window::task::{Outcome, Task};
+use crate::window::toasts::Grade;
+
+/// Longer side of a picture on the screen, pixels.
+const SHOWN: usize = 512;
+/// Colours one can ask for here.
+const COLOURS: std::ops::RangeInclusive<u16> = 2..=24;
+
+/// The picture that was read, or why not.
+type Read = Result<photo::Photo, String>;
+/// What was made, or why not.
+type Made = Result<Box<Posterised>, String>;
+
+/// The pane's state.
+#[derive(Default)]
+pub struct Posterise {
+    path: String,
+    reading: Option<Task<Read>>,
+    choosing: Option<Task<Option<PathBuf>>>,
+    problem: Option<String>,
+    picture: Option<Picture>,
+    settings: PosteriseSettings,
+    own_size: bool,
+    made: Later<(u64, PosteriseSettings), Made>,
+    map: Option<(u64, TextureHandle)>,
+    /// Counts answers, to know when the map is to be drawn again.
+    seen: u64,
+    regions: RegionList,
+}
+
+/// The picture to be posterised.
+struct Picture {
+    source: Arc<SourceImage>,
+    /// Another number for every picture.
+    number: u64,
+    texture: TextureHandle,
+}
+
+impl Posterise {
+    /// Shows the pane.
+    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+        self.poll(ui.ctx());
+        let regions = match document.design().structure() {
+            Structure::Regions(regions) => Some(regions),
+            _ => None,
+        };
+        if self.picture.is_none()
+            && let Some(source) = regions.and_then(Regions::source)
+        {
+            self.take(ui.ctx(), Arc::clone(source));
+            self.settings.colours = regions.map_or(8, |r| r.palette().len() as u16).clamp(2, 24);
+            self.settings.ends = Some(document.design().ends());
+            self.settings.picks = Some(document.design().picks());
+            self.own_size = true;
+        }
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            self.source_ui(ui);
+            if self.picture.is_some() {
+                self.settings_ui(ui, document);
+                self.work_ui(ui, document, actions);
+            }
+            if let Some(regions) = regions {
+                ui.separator();
+                self.regions.show(ui, document, regions, actions);
+            }
+        });
+    }
+
+    fn poll(&mut self, ctx: &egui::Context) {
+        if let Some(choosing) = &self.choosing {
+            match choosing.poll() {
+                Outcome::Working => {}
+                Outcome::Ready(path) => {
+                    self.choosing = None;
+                    if let Some(path) = path {
+                        self.path = path.display().to_string();
+                        self.read(ctx);
+                    }
+                }
+                Outcome::Lost => self.choosing = None,
+            }
+        }
+        let Some(reading) = &self.reading else {
+            return;
+        };
+        match reading.poll() {
+            Outcome::Working => {}
+            Outcome::Ready(Ok(photo)) => {
+                self.reading = None;
+                self.problem = photo.warnings.first().cloned();
+                self.take(ctx, Arc::new(photo.source));
+            }
+            Outcome::Ready(Err(problem)) => {
+                self.reading = None;
+                self.problem = Some(problem);
+            }
+            Outcome::Lost => {
+                self.reading = None;
+                self.problem = Some("the picture could not be read: try another".to_owned());
+            }
+        }
+    }
+
+    fn read(&mut self, ctx: &egui::Context) {
+        let path = PathBuf::from(self.path.trim());
+        self.problem = None;
+        if let Some(stem) = path.file_stem() {
+            self.settings.name = stem.to_string_lossy().into_owned();
+        }
+        let work = move || photo::load(&path).map_err(|error| error.to_string());
+        self.reading = Task::start(ctx, "picture", work).ok();
+    }
+
+    /// Takes a picture to be posterised.
+    pub fn take(&mut self, ctx: &egui::Context, source: Arc<SourceImage>) {
+        let (width, height) = (source.width() as usize, source.height() as usize);
+        let step = width.max(height).div_ceil(SHOWN).max(1);
+        let size = [(width / step).max(1), (height / step).max(1)];
+        let pixels = (0..size[0] * size[1])
+            .map(|at| {
+                let (x, y) = (at % size[0] * step, at / size[0] * step);
+                let [red, green, blue] = source.pixels()[y * width + x];
+                tokens::yarn_colour(red, green, blue)
+            })
+            .collect();
+        let image = egui::ColorImage::new(size, pixels);
+        self.picture = Some(Picture {
+            source,
+            number: self
+                .picture
+                .as_ref()
+                .map_or(0, |picture| picture.number + 1),
+            texture: ctx.load_texture("picture", image, TextureOptions::LINEAR),
+        });
+    }
+
+    fn source_ui(&mut self, ui: &mut egui::Ui) {
+        let palette = Palette::current(ui);
+        ui.horizontal(|ui| {
+            let label = ui.label("Picture");
+            let field = TextEdit::singleline(&mut self.path).hint_text("path of a photograph");
+            let field = ui.add(field).labelled_by(label.id);
+            let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            if (ui.button("Read").clicked() || entered) && !self.path.trim().is_empty() {
+                self.read(ui.ctx());
+            }
+            if ui.button("Choose…").clicked() && self.choosing.is_none() {
+                let ask = || {
+                    let dialog = rfd::FileDialog::new().set_title("A picture to posterise");
+                    dialog.pick_file()
+                };
+                self.choosing = Task::start(ui.ctx(), "dialog", ask).ok();
+            }
+            if self.reading.is_some() {
+                ui.spinner();
+            }
+        });
+        if let Some(problem) = &self.problem {
+            ui.horizontal_wrapped(|ui| {
+                icons::show(ui, Grade::Warning, palette.warning);
+                ui.label(RichText::new(problem).color(palette.warning));
+            });
+        }
+        if self.picture.is_none() {
+            let text = "Read a photograph or an artwork: it becomes regions of weaves.";
+            ui.label(RichText::new(text).color(palette.quiet));
+        }
+    }
+
+    fn settings_ui(&mut self, ui: &mut egui::Ui, document: &Document) {
+        let settings = &mut self.settings;
+        let sett = document.design().sett();
+        (settings.ends_per_cm, settings.picks_per_cm) = (sett.ends.per_cm, sett.picks.per_cm);
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label("Colours");
+            ui.add(egui::Slider::new(&mut settings.colours, COLOURS))
+                .labelled_by(label.id);
+            if ui.checkbox(&mut settings.dither, "dither").changed() && settings.dither {
+                // Dithering is made of specks.
+                settings.speck = 0;
+            }
+            let label = ui.label("merge specks under");
+            let field = DragValue::new(&mut settings.speck)
+                .range(0..=500)
+                .suffix(" crossings");
+            ui.add(field).labelled_by(label.id);
+            ui.checkbox(&mut settings.preview_only, "own yarns for each colour");
+        });
+        ui.horizontal_wrapped(|ui| {
+            let mut ends = settings.ends.unwrap_or(960);
+            let label = ui.label("Ends");
+            let field = DragValue::new(&mut ends).range(2..=16_000);
+            if ui.add(field).labelled_by(label.id).changed() {
+                settings.ends = Some(ends);
+            }
+            ui.checkbox(&mut self.own_size, "own number of picks");
+            if self.own_size {
+                let mut picks = settings.picks.unwrap_or(960);
+                let label = ui.label("Picks");
+                let field = DragValue::new(&mut picks).range(2..=20_000);
+                ui.add(field).labelled_by(label.id);
+                settings.picks = Some(picks);
+                let label = ui.label("fit");
+                let fits = egui::ComboBox::from_id_salt("fit");
+                let shown = fits
+                    .selected_text(fit_name(settings.fit))
+                    .show_ui(ui, |ui| {
+                        for fit in [Fit::Crop, Fit::Pad, Fit::Stretch] {
+                            ui.selectable_value(&mut settings.fit, fit, fit_name(fit));
+                        }
+                    });
+                shown.response.labelled_by(label.id);
+            } else {
+                // The picks follow from the picture's shape and the sett.
+                settings.picks = None;
+            }
+        });
+    }
+
+    /// Keeps the posterised design up to date and shows it.
+    fn work_ui(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+        let Some(picture) = &self.picture else {
+            return;
+        };
+        let previous = follows(document.design(), &picture.source);
+        let (source, settings) = (Arc::clone(&picture.source), self.settings.clone());
+        let question = (picture.number, settings.clone());
+        let was_working = self.made.is_working();
+        self.made.ask(ui.ctx(), &question, move |job| {
+            let made = posterise(&source, &settings, previous.as_deref(), job);
+            made.map(Box::new).map_err(|error| error.to_string())
+        });
+        if was_working && !self.made.is_working() {
+            self.seen += 1;
+        }
+        let palette = Palette::current(ui);
+        let made = match self.made.answer() {
+            Some(Ok(made)) => made,
+            Some(Err(problem)) => {
+                ui.label(RichText::new(format!("Error: {problem}")).color(palette.error));
+                return;
+            }
+            None => {
+                ui.label(RichText::new("Reducing the colours…").color(palette.quiet));
+                return;
+            }
+        };
+        if self.map.as_ref().is_none_or(|(seen, _)| *seen != self.seen) {
+            self.map = Some((self.seen, map_of(ui.ctx(), made)));
+        }
+        let (ends, picks) = (made.design.ends(), made.design.picks());
+        ui.horizontal_wrapped(|ui| {
+            let weavable = made.design.weavable();
+            let (grade, colour, word) = match weavable {
+                true => (Grade::Done, palette.text, "Weavable"),
+                false => (
+                    Grade::Warning,
+                    palette.warning,
+                    "Preview only: no loom weaves it",
+                ),
+            };
+            icons::show(ui, grade, colour);
+            ui.label(RichText::new(word).color(colour));
+            let sett = made.design.sett();
+            let across = ends as f32 * sett.ends.mean_pitch_mm() / 10.0;
+            let along = picks as f32 * sett.picks.mean_pitch_mm() / 10.0;
+            ui.label(format!(
+                "{ends} ends × {picks} picks · {across:.1} × {along:.1} cm"
+            ));
+            let apply = ui.button("Make it the design");
+            if apply
+                .on_hover_text("Undo brings the present design back")
+                .clicked()
+            {
+                let design = Design::clone(&made.design);
+                actions.push(Action::edit(Edit::Replace(Box::new(design))));
+            }
+            if self.made.is_working() {
+                ui.spinner();
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            let room = (ui.available_width() / 2.0 - tokens::GAP).clamp(80.0, 360.0);
+            let aspect = picture.source.height() as f32 / picture.source.width().max(1) as f32;
+            shown_ui(ui, &picture.texture, room, aspect, "The picture");
+            if let Some((_, map)) = &self.map {
+                let sett = made.design.sett();
+                let size = [
+                    ends as f32 * sett.ends.mean_pitch_mm(),
+                    picks as f32 * sett.picks.mean_pitch_mm(),
+                ];
+                shown_ui(
+                    ui,
+                    map,
+                    room,
+                    size[1] / size[0].max(1e-6),
+                    "Its map of regions",
+                );
+            }
+        });
+        for warning in &made.warnings {
+            ui.horizontal_wrapped(|ui| {
+                icons::show(ui, Grade::Warning, palette.warning);
+                ui.label(RichText::new(warning).small().color(palette.warning));
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+impl Posterise {
+    /// Takes a picture as if it had been read, for a small cloth.
+    pub fn take_small(&mut self, ctx: &egui::Context, source: SourceImage) {
+        self.settings.ends = Some(64);
+        self.settings.colours = 3;
+        self.take(ctx, Arc::new(source));
+    }
+}
+
+/// The design whose weaves and locks go on, where it is of the same picture.
+fn follows(design: &Arc<Design>, source: &Arc<SourceImage>) -> Option<Arc<Design>> {
+    match design.structure() {
+        Structure::Regions(regions) => {
+            let same = regions
+                .source()
+                .is_some_and(|known| Arc::ptr_eq(known, source));
+            same.then(|| Arc::clone(design))
+        }
+        _ => None,
+    }
+}
+
+fn fit_name(fit: Fit) -> &'static str {
+    match fit {
+        Fit::Crop => "crop",
+        Fit::Pad => "pad",
+        Fit::Stretch => "stretch",
+    }
+}
+
+fn shown_ui(ui: &mut egui::Ui, texture: &TextureHandle, width: f32, aspect: f32, name: &str) {
+    let height = (width * aspect).min(width * 1.6);
+    let size = egui::vec2(height / aspect.max(1e-6), height);
+    let image = egui::Image::new((texture.id(), size))
+        .fit_to_exact_size(size)
+        .alt_text(name);
+    ui.add(image).on_hover_text(name);
+}
+
+/// The regions in their colours, at most [`SHOWN`] pixels a side.
+fn map_of(ctx: &egui::Context, made: &Posterised) -> TextureHandle {
+    let (ends, picks) = (made.design.ends(), made.design.picks());
+    let step = ends.max(picks).div_ceil(SHOWN as u32).max(1);
+    let size = [
+        (ends / step).max(1) as usize,
+        (picks / step).max(1) as usize,
+    ];
+    let Structure::Regions(regions) = made.design.structure() else {
+        let image = egui::ColorImage::filled([1, 1], tokens::SURROUND);
+        return ctx.load_texture("map", image, TextureOptions::NEAREST);
+    };
+    let pixels = (0..size[0] * size[1])
+        .map(|at| {
+            let end = (at % size[0]) as u32 * step;
+            let pick = picks - 1 - ((at / size[0]) as u32 * step).min(picks - 1);
+            let region = regions.map().get(end.min(ends - 1), pick);
+            let colour = regions
+                .palette()
+                .get(usize::from(region))
+                .and_then(|r| r.colour);
+            let Srgb(red, green, blue) = colour.unwrap_or(Srgb(0, 0, 0));
+            tokens::yarn_colour(red, green, blue)
+        })
+        .collect();
+    let image = egui::ColorImage::new(size, pixels);
+    ctx.load_texture("map", image, TextureOptions::NEAREST)
+}

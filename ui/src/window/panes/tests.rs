@@ -1,0 +1,260 @@
+//! Each pane without a display: what it shows and what it asks for, by accessible label.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pickglass::edit::{Document, Edit};
+use pickglass::formats::presets;
+
+use super::{Pane, Panes};
+use crate::window::action::{Action, Mark};
+
+/// A document with its panes, and what they asked for so far.
+struct Bench {
+    document: Document,
+    panes: Panes,
+    pane: Pane,
+    asked: Vec<Action>,
+}
+
+fn bench(preset: &str, pane: Pane) -> Harness<'static, Bench> {
+    let builder = Harness::builder().with_size([720.0, 520.0]);
+    build(builder, preset, pane)
+}
+
+fn build(
+    builder: egui_kittest::HarnessBuilder<Bench>,
+    preset: &str,
+    pane: Pane,
+) -> Harness<'static, Bench> {
+    let design = presets::design(preset)
+        .expect("a preset")
+        .expect("a design");
+    let bench = Bench {
+        document: Document::new(design),
+        panes: Panes::default(),
+        pane,
+        asked: Vec::new(),
+    };
+    builder.build_ui_state(
+        |ui, bench: &mut Bench| {
+            let mut actions = Vec::new();
+            bench
+                .panes
+                .show(bench.pane, ui, &bench.document, &mut actions);
+            for action in actions {
+                if let Action::Edit(edit) = &action {
+                    bench.document.apply(Edit::clone(edit)).expect("an edit");
+                }
+                bench.asked.push(action);
+            }
+        },
+        bench,
+    )
+}
+
+/// Waits for what a pane works out on a thread of its own.
+fn wait(harness: &mut Harness<'_, Bench>, label: &str) {
+    for _ in 0..2000 {
+        harness.step();
+        if harness.query_all_by_label_contains(label).next().is_some() {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("waited in vain for {label:?}");
+}
+
+#[test]
+fn every_pane_shows_every_preset() {
+    for preset in presets::names() {
+        for pane in Pane::ALL {
+            let mut harness = bench(preset, pane);
+            harness.run_steps(3);
+        }
+    }
+}
+
+#[test]
+fn floats_are_listed_and_looked_at() {
+    let mut harness = bench("silk-satin", Pane::Floats);
+    wait(&mut harness, "No float is longer");
+    harness.state_mut().panes.floats = super::floats::Floats::with_limits([2, 2]);
+    wait(&mut harness, "long floats");
+    let first = harness
+        .get_all_by_label_contains("(")
+        .next()
+        .expect("a float");
+    first.click();
+    harness.run_steps(3);
+    let asked = &harness.state().asked;
+    assert!(
+        asked
+            .iter()
+            .any(|action| matches!(action, Action::LookAt { .. }))
+    );
+    assert!(asked.iter().any(
+        |action| matches!(action, Action::Mark(Mark::Float { ends, picks, .. })
+            if ends.max(picks) > &2)
+    ));
+}
+
+#[test]
+fn yarns_are_opened_exchanged_and_joined() {
+    let mut harness = bench("default", Pane::Yarns);
+    wait(&mut harness, "m a m");
+    harness.get_by_label("ecru").click();
+    harness.run_steps(3);
+    let before = harness.state().document.design().maps().clone();
+    harness.get_by_label("Exchange").click();
+    harness.run_steps(3);
+    assert!(*harness.state().document.design().maps() != before);
+    harness.get_by_label("Join").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.design().yarns().len(), 2);
+    harness.get_by_label("Add yarn").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document.design().yarns().len(), 3);
+}
+
+#[test]
+fn colourways_are_duplicated_renamed_and_used() {
+    let mut harness = bench("oxford", Pane::Colourways);
+    harness.run_steps(2);
+    harness.get_by_label("Duplicate the yarns in use").click();
+    harness.run_steps(3);
+    let name = |harness: &Harness<'_, Bench>| {
+        let design = harness.state().document.design();
+        design
+            .colourways()
+            .last()
+            .map(|colourway| colourway.name.clone())
+    };
+    assert!(name(&harness).is_some());
+    harness.get_by_label_contains("Remove ").click();
+    harness.run_steps(3);
+    assert_eq!(name(&harness), None);
+    // Undo is the history's: what was removed comes back.
+    harness.state_mut().document.undo();
+    harness.run_steps(3);
+    assert!(name(&harness).is_some());
+}
+
+#[test]
+fn a_changed_sett_asks_what_to_keep() {
+    let mut harness = bench("oxford", Pane::Sett);
+    wait(&mut harness, "Width in the reed");
+    assert!(harness.query_by_label("Keep threads").is_none());
+    harness.state_mut().panes.sett.type_in([31.0, 22.0]);
+    harness.run_steps(3);
+    harness.get_by_label("Keep threads").click();
+    harness.run_steps(3);
+    let design = harness.state().document.design();
+    assert!((design.sett().ends.per_cm - 31.0).abs() < 1e-3);
+    assert!(harness.query_by_label("Keep threads").is_none());
+}
+
+#[test]
+fn the_history_goes_back() {
+    let mut harness = bench("oxford", Pane::History);
+    harness
+        .state_mut()
+        .document
+        .apply(Edit::Invert)
+        .expect("an edit");
+    harness.run_steps(3);
+    harness.get_by_label("1 opened").click();
+    harness.run_steps(3);
+    let asked = harness.state().asked.last();
+    assert!(matches!(asked, Some(Action::GoTo(0))), "{asked:?}");
+}
+
+#[test]
+fn a_picture_becomes_a_design_of_regions() {
+    let mut harness = bench("oxford", Pane::Posterise);
+    harness.run_steps(2);
+    let pixels = (0..64 * 48)
+        .map(|at| [[20, 20, 30], [200, 40, 40], [240, 235, 220]][at % 64 / 22])
+        .collect();
+    let source = pickglass::design::SourceImage::new(64, 48, pixels).expect("a picture");
+    let ctx = harness.ctx.clone();
+    harness.state_mut().panes.posterise.take_small(&ctx, source);
+    wait(&mut harness, "Make it the design");
+    harness.get_by_label("Make it the design").click();
+    wait(&mut harness, "3 regions");
+    harness
+        .get_all_by_label_contains("Weave of ")
+        .next()
+        .expect("a weave")
+        .click();
+    harness.run_steps(4);
+    harness
+        .get_all_by_label_contains("plain, ")
+        .next()
+        .expect("plain weave")
+        .click();
+    harness.run_steps(3);
+    let asked = &harness.state().asked;
+    assert!(asked.iter().any(|action| {
+        matches!(action, Action::Edit(edit) if matches!(**edit, Edit::SetFill { .. }))
+    }));
+}
+
+#[test]
+fn the_cut_follows_the_pointer() {
+    let mut harness = bench("herringbone", Pane::Section);
+    harness.run_steps(2);
+    harness.state_mut().panes.section.follow(Some((4, 8)));
+    harness.run_steps(2);
+    assert!(
+        harness
+            .query_by_label_contains("Cut along pick 9")
+            .is_some()
+    );
+    harness.get_by_label("Along an end").click();
+    harness.run_steps(2);
+    assert!(
+        harness
+            .query_all_by_label_contains("Cut along end 5")
+            .next()
+            .is_some()
+    );
+}
+
+/// Every pane in both themes and at two densities. Where `PICKGLASS_PICTURES` names a
+/// folder, the pictures are kept there.
+#[test]
+fn every_pane_draws_itself_in_both_themes() {
+    let folder = std::env::var_os("PICKGLASS_PICTURES");
+    for (theme, word) in [(egui::Theme::Dark, "dark"), (egui::Theme::Light, "light")] {
+        for density in [1.0, 2.0] {
+            for pane in Pane::ALL {
+                // These two are views of their own.
+                if matches!(pane, Pane::Draft | Pane::Cloth) {
+                    continue;
+                }
+                let Some(renderer) = crate::window::tests::renderer("pictures of panes") else {
+                    return;
+                };
+                let builder = Harness::builder()
+                    .with_size([720.0, 320.0])
+                    .with_theme(theme)
+                    .with_pixels_per_point(density)
+                    .renderer(renderer);
+                let mut harness = build(builder, "damask", pane);
+                crate::tokens::apply(&harness.ctx);
+                for _ in 0..20 {
+                    harness.step();
+                    std::thread::sleep(std::time::Duration::from_millis(10));
+                }
+                let picture = harness.render().expect("a picture");
+                let first = picture.get_pixel(2, 2);
+                let other = picture.pixels().filter(|pixel| *pixel != first).count();
+                assert!(other > 100, "{pane:?} {word} ×{density}: nothing is drawn");
+                if let Some(folder) = &folder {
+                    let name = format!("{pane:?} {word} {density}.png");
+                    let _ = picture.save(std::path::Path::new(folder).join(name));
+                }
+            }
+        }
+    }
+}

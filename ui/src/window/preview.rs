@@ -1,0 +1,466 @@
+//! The cloth pane: what is looked at and how, what the worker is asked for, and what it
+//! says while it works.
+
+use egui::{Frame, Id, PointerButton, Rect, RichText, pos2, vec2};
+use pickglass::edit::Document;
+use pickglass::exemplar::ExemplarStore;
+use pickglass::render::View;
+use pickglass::still::{EffectChoice, Heading, LightChoice, StillRequest, usual_width_mm};
+
+use super::action::Action;
+use super::cloth::bar::{self, Says};
+use super::cloth::compare::Compare;
+use super::cloth::glass::{self, Glass};
+use super::cloth::lamp;
+use super::cloth_pane::ClothPane;
+use super::laid::Laid;
+use super::toasts::Grade;
+use super::view::ClothView;
+use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest};
+use crate::command_table::Command;
+use crate::tokens::{self, Palette};
+
+/// One step of the zoom keys.
+const ZOOM_STEP: f32 = 1.25;
+/// Degrees that the eye turns for a point of dragging, and how low it may go.
+const TURN_A_POINT: f32 = 0.4;
+const LOWEST_EYE: f32 = 12.0;
+/// Millimetres of cloth a point at actual size, on a screen of 96 points an inch.
+const ACTUAL_SIZE: f32 = 25.4 / 96.0;
+/// A preview has at most this many pixels; beyond, it is drawn smaller and stretched.
+const MOST_PIXELS: f32 = 4.0e6;
+
+/// How previews are made.
+pub struct PreviewSettings {
+    pub store: ExemplarStore,
+    pub effects: EffectChoice,
+    pub dials: Vec<(String, String)>,
+}
+
+impl Default for PreviewSettings {
+    fn default() -> Self {
+        Self {
+            store: ExemplarStore::user(),
+            effects: EffectChoice::default(),
+            // Each pass is shown.
+            dials: vec![("pass-spp".to_owned(), "1".to_owned())],
+        }
+    }
+}
+
+/// The cloth as it is looked at.
+pub struct Preview {
+    pub view: View,
+    pub light: LightChoice,
+    pub paused: bool,
+    pub pane: ClothPane,
+    /// The crossing that is marked on the cloth, as in every view.
+    pub marked: Option<(i64, i64)>,
+    /// Millimetres a point of this screen.
+    pub mm_per_point: f32,
+    /// Where the eye was turned to; `None` = where the view looks from.
+    eye: Option<[f32; 2]>,
+    glass: Glass,
+    compare: Option<Compare>,
+    calibrating: bool,
+    /// `None` until the pane's size is known, or when the view is to be set anew.
+    cloth_view: Option<ClothView>,
+    /// Whether a view set anew shows the whole repeat, or the view's usual width.
+    fit: bool,
+    effects: EffectChoice,
+    dials: Vec<(String, String)>,
+    laid: Option<Laid>,
+    /// What was last asked of the worker, and at which revision.
+    asked: Option<(u64, StillRequest)>,
+    generation: u64,
+    worker: ClothWorker,
+    reported_failure: Option<String>,
+    /// Whether the pointer or the keyboard is on the cloth.
+    in_use: bool,
+    widget: Option<Id>,
+}
+
+impl Preview {
+    /// Starts the worker; `ctx` is woken whenever it has something.
+    pub fn new(ctx: &egui::Context, settings: PreviewSettings) -> std::io::Result<Self> {
+        let wake = ctx.clone();
+        Ok(Self {
+            view: View::Face,
+            light: LightChoice::default(),
+            paused: false,
+            pane: ClothPane::default(),
+            marked: None,
+            mm_per_point: ACTUAL_SIZE,
+            eye: None,
+            glass: Glass::default(),
+            compare: None,
+            calibrating: false,
+            cloth_view: None,
+            fit: false,
+            effects: settings.effects,
+            dials: settings.dials,
+            laid: None,
+            asked: None,
+            generation: 0,
+            worker: ClothWorker::start(settings.store, move || wake.request_repaint())?,
+            reported_failure: None,
+            in_use: false,
+            widget: None,
+        })
+    }
+
+    /// Forgets what was seen: another document is open.
+    pub fn forget(&mut self) {
+        self.cloth_view = None;
+        self.pane.forget();
+        self.compare = None;
+        self.asked = None;
+        self.laid = None;
+    }
+
+    /// Whether keys such as `F` mean the cloth.
+    pub fn in_use(&self) -> bool {
+        self.in_use
+    }
+
+    /// Gives the keyboard to the cloth.
+    pub fn focus(&self, ctx: &egui::Context) {
+        if let Some(id) = self.widget {
+            ctx.memory_mut(|memory| memory.request_focus(id));
+        }
+    }
+
+    /// What the worker is at.
+    pub fn phase(&self) -> Phase {
+        self.worker.phase()
+    }
+
+    /// How far the building of exemplars is.
+    pub fn building(&self) -> Option<Building> {
+        self.worker.building()
+    }
+
+    /// What was last asked for, for an export of the same.
+    pub fn asked(&self) -> Option<&StillRequest> {
+        self.asked.as_ref().map(|(_, still)| still)
+    }
+
+    /// Takes what the worker finished.
+    pub fn poll(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let mut failed = |error: String, kept: &str| {
+            actions.push(Action::Say(Grade::Error, error, kept.to_owned()));
+        };
+        if let Some(picture) = self.worker.take_picture()
+            && picture.generation == self.generation
+        {
+            self.pane.take(ctx, picture);
+        }
+        if let Some(picture) = self.worker.take_glass()
+            && self.glass.is_held()
+        {
+            self.glass.take(ctx, picture);
+        }
+        if let Some(error) = self.worker.take_failure() {
+            failed(error, "The coarse cloth is still shown.");
+        }
+        if let Phase::Failed(error) = self.worker.phase()
+            && self.reported_failure.as_ref() != Some(&error)
+        {
+            failed(error.clone(), "The last picture is still shown.");
+            self.reported_failure = Some(error);
+        }
+    }
+
+    /// Does what a command of the view menu says; false if it is none of the cloth's.
+    pub fn obey(&mut self, command: Command) -> bool {
+        match command {
+            Command::Look(view) => {
+                self.view = view;
+                self.eye = None;
+                self.fit = false;
+                self.cloth_view = None;
+            }
+            Command::Fit => {
+                if !self.view.turns_over() {
+                    self.view = View::Face;
+                }
+                self.fit = true;
+                self.cloth_view = None;
+            }
+            Command::ActualSize => {
+                let actual = self.mm_per_point;
+                self.rescale(|view| view.mm_per_point = actual);
+            }
+            Command::ZoomIn => self.zoom(ZOOM_STEP),
+            Command::ZoomOut => self.zoom(1.0 / ZOOM_STEP),
+            Command::Pause if self.paused => self.resume(),
+            Command::Pause => self.pause(),
+            _ => return false,
+        }
+        true
+    }
+
+    /// Stops drawing until [`Self::resume`].
+    pub fn pause(&mut self) {
+        self.paused = true;
+        self.worker.stop();
+    }
+
+    fn resume(&mut self) {
+        self.paused = false;
+        self.asked = None;
+    }
+
+    fn rescale(&mut self, change: impl FnOnce(&mut ClothView)) {
+        if let Some(view) = &mut self.cloth_view {
+            change(view);
+        }
+    }
+
+    fn zoom(&mut self, factor: f32) {
+        self.rescale(|view| {
+            let pane = Rect::from_center_size(pos2(0.0, 0.0), vec2(1.0, 1.0));
+            view.zoom(pane, pane.center(), factor);
+        });
+    }
+
+    /// Shows the pane.
+    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+        let pane = ui.available_rect_before_wrap();
+        let laid = Laid::of(document, self.laid.take());
+        let mut view = match self.cloth_view {
+            Some(view) => view,
+            None => self.initial_view(pane, &laid),
+        };
+        let description = format!("Cloth of {}", laid.design.name);
+        let straight = self.eye.is_none() && matches!(self.view, View::Face | View::Back);
+        let marked = (self.marked.filter(|_| straight))
+            .map(|(end, pick)| laid.near(view.centre_mm, end, pick));
+        let response = self.pane.show(ui, &mut view, &description, marked);
+        self.turn(&response);
+        self.in_use = response.hovered() || response.has_focus();
+        self.widget = Some(response.id);
+        self.cloth_view = Some(view);
+        let asked = self.asked.as_ref().map(|(_, still)| still);
+        match self.glass.hold(ui, &response, pane, view, asked) {
+            Some(glass::Wish::Look(still)) => self.ask(Aim::Glass, *still, &laid),
+            Some(glass::Wish::Leave) => self.asked = None,
+            None => {}
+        }
+        if !self.glass.is_held() {
+            self.ask_worker(
+                pane,
+                ui.ctx().pixels_per_point(),
+                &laid,
+                document.revision(),
+            );
+        }
+        if self.pane.shown.is_none() {
+            self.busy_ui(ui, pane);
+        } else {
+            self.over_ui(ui, pane, view);
+        }
+        // Only the straight views show where a crossing lies.
+        if let Some(at) = response.hover_pos().filter(|_| straight) {
+            let crossing = laid.crossing_at(view.to_cloth(pane, at));
+            actions.push(Action::Hover(Some(crossing)));
+        }
+        self.laid = Some(laid);
+    }
+
+    /// The right button turns the eye round the cloth.
+    fn turn(&mut self, response: &egui::Response) {
+        if !response.dragged_by(PointerButton::Secondary) {
+            return;
+        }
+        let delta = response.drag_delta() * TURN_A_POINT;
+        let [azimuth, elevation] = self.eye.unwrap_or([-90.0, 90.0]);
+        self.eye = Some([
+            (azimuth - delta.x + 180.0).rem_euclid(360.0) - 180.0,
+            (elevation - delta.y).clamp(LOWEST_EYE, 90.0),
+        ]);
+    }
+
+    /// What lies over the picture.
+    fn over_ui(&mut self, ui: &mut egui::Ui, pane: Rect, view: ClothView) {
+        if let Some(compare) = &mut self.compare {
+            compare.show(ui, pane, view);
+        }
+        let lamp_at = pane.right_bottom() - vec2(1.0, 1.0) * (lamp::RADIUS + tokens::PAD);
+        if pane.size().min_elem() > 6.0 * lamp::RADIUS {
+            lamp::show(ui, lamp_at, &mut self.light);
+        }
+        let says = Says {
+            back: self.view.turns_over(),
+            slanting: self.eye.is_some() || !matches!(self.view, View::Face | View::Back),
+            kept: self.compare.is_some(),
+            near: self.in_use,
+        };
+        match bar::show(ui, pane, &says) {
+            Some(bar::Wish::TurnOver) => {
+                let back = self.view.turns_over();
+                self.view = if back { View::Face } else { View::Back };
+                if let Some(view) = &mut self.cloth_view {
+                    view.mirrored = !back;
+                }
+            }
+            Some(bar::Wish::Straighten) => {
+                self.eye = None;
+                if !self.view.turns_over() {
+                    self.view = View::Face;
+                }
+            }
+            Some(bar::Wish::Keep) => {
+                self.compare = (self.pane.shown.as_ref())
+                    .map(|shown| Compare::keep(ui.ctx(), shown.still.clone(), &shown.image));
+            }
+            Some(bar::Wish::Forget) => self.compare = None,
+            Some(bar::Wish::Calibrate) => self.calibrating = true,
+            None => {}
+        }
+        if self.calibrating {
+            self.calibrating = bar::calibrate(ui.ctx(), &mut self.mm_per_point);
+        }
+        self.glass.show(ui, pane, view);
+    }
+
+    fn initial_view(&self, pane: Rect, laid: &Laid) -> ClothView {
+        let middle = laid.whole_mm().map(|mm| mm / 2.0);
+        let mut view = if self.fit {
+            ClothView::fitting(pane, middle, laid.whole_mm())
+        } else {
+            ClothView::across(pane, middle, usual_width_mm(self.view, &laid.design))
+        };
+        view.mirrored = self.view.turns_over();
+        view
+    }
+
+    /// Asks for a new picture when what is to be seen has changed.
+    fn ask_worker(&mut self, pane: Rect, density: f32, laid: &Laid, revision: u64) {
+        let Some(view) = self.cloth_view else {
+            return;
+        };
+        let pixels = pane.size() * density;
+        let shrink = (MOST_PIXELS / (pixels.x * pixels.y).max(1.0))
+            .sqrt()
+            .min(1.0);
+        let still = StillRequest {
+            width: ((pixels.x * shrink) as u32).max(1),
+            height: ((pixels.y * shrink) as u32).max(1),
+            view: self.view,
+            eye: self.eye.map(|[azimuth, elevation]| Heading {
+                azimuth: azimuth.round() as i16,
+                elevation: elevation.round() as i16,
+            }),
+            width_mm: Some(view.width_mm(pane)),
+            centre_mm: Some(view.centre_mm),
+            light: self.light.clone(),
+            effects: self.effects.clone(),
+            dials: self.dials.clone(),
+            ..StillRequest::default()
+        };
+        let wanted = (revision, still);
+        if self.asked.as_ref() == Some(&wanted) {
+            return;
+        }
+        let still = wanted.1.clone();
+        self.asked = Some(wanted);
+        if self.paused {
+            return;
+        }
+        self.generation += 1;
+        self.ask(Aim::Pane, still, laid);
+    }
+
+    fn ask(&mut self, aim: Aim, still: StillRequest, laid: &Laid) {
+        self.reported_failure = None;
+        let blank = match aim {
+            Aim::Pane => self.pane.shown.is_none(),
+            Aim::Glass => !self.glass.has_picture(),
+        };
+        self.worker.request(PreviewRequest {
+            generation: self.generation,
+            aim,
+            design: std::sync::Arc::clone(&laid.design),
+            drawdown: std::sync::Arc::clone(&laid.drawdown),
+            still,
+            blank,
+        });
+    }
+
+    /// In the middle of an empty pane: what is being done, how far, cancel.
+    fn busy_ui(&mut self, ui: &mut egui::Ui, pane: Rect) {
+        let phase = self.worker.phase();
+        plate(ui, pane, |ui| match phase {
+            Phase::Preparing => {
+                ui.label(RichText::new("Preparing the cloth").text_style(egui::TextStyle::Heading));
+                ui.spinner();
+                if ui.button("Stop").clicked() {
+                    self.pause();
+                }
+            }
+            _ if self.paused => {
+                ui.label(RichText::new("Stopped").text_style(egui::TextStyle::Heading));
+                ui.label("The cloth is not being drawn.");
+                if ui.button("Draw it").clicked() {
+                    self.resume();
+                }
+            }
+            Phase::Failed(error) => {
+                ui.label(RichText::new("Error").text_style(egui::TextStyle::Heading));
+                ui.label(error);
+                if ui.button("Try again").clicked() {
+                    self.asked = None;
+                }
+            }
+            _ => {
+                ui.label("Drawing the cloth");
+            }
+        });
+    }
+}
+
+/// A plate in the middle of the pane.
+fn plate(ui: &mut egui::Ui, pane: Rect, content: impl FnOnce(&mut egui::Ui)) {
+    let palette = Palette::current(ui);
+    egui::Area::new(Id::unique("plate"))
+        .order(egui::Order::Middle)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .fixed_pos(pane.center())
+        .show(ui.ctx(), |ui| {
+            Frame::new()
+                .fill(palette.raised)
+                .corner_radius(tokens::RADIUS)
+                .inner_margin(2.0 * tokens::PAD)
+                .show(ui, |ui| {
+                    ui.set_max_width(tokens::TOAST_WIDTH);
+                    ui.vertical_centered(content);
+                });
+        });
+}
+
+#[cfg(test)]
+impl Preview {
+    /// Whether the pick glass shows a picture.
+    pub fn glass_has_picture(&self) -> bool {
+        self.glass.has_picture()
+    }
+
+    /// Whether the picture is of full size and from the full exemplars.
+    pub fn has_full_picture(&self) -> bool {
+        let full = |shown: &super::cloth_pane::Shown| shown.full_size && shown.full_cloth;
+        self.pane.shown.as_ref().is_some_and(full)
+    }
+
+    pub fn cloth_view(&self) -> Option<ClothView> {
+        self.cloth_view
+    }
+
+    /// Stops for a picture of the window that does not change.
+    pub fn freeze(&mut self) {
+        self.pause();
+        self.generation += 1;
+        self.pane.forget();
+        self.asked = None;
+    }
+}

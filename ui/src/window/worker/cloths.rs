@@ -1,0 +1,195 @@
+//! Which cloth is drawn: the full one as soon as there is one, until then a coarse one.
+//!
+//! Both follow edits and make anew only what an edit touches. Where the full cloth needs
+//! exemplars that are not there, the coarse one steps in, a thread of its own builds them
+//! and the last request is drawn again. A build goes on through edits that need the same
+//! exemplars.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use pickglass::cloth::YarnClasses;
+use pickglass::job::Job;
+use pickglass::still::{self, Followed, PreparedCloth, StillError, UnfinishedCloth};
+
+use super::{Building, Desk, Phase, PreviewRequest};
+
+/// Voxel level of the cloth that is drawn until the full one is built.
+const COARSE_LEVEL: &str = "3";
+
+/// A cloth and the request it was made for.
+pub(super) type Kept = (PreviewRequest, Arc<PreparedCloth>);
+
+/// The full cloth that is being built.
+pub(super) struct Builder {
+    request: PreviewRequest,
+    classes: YarnClasses,
+    pub(super) job: Job,
+}
+
+impl Builder {
+    /// Whether what is being built also serves another request.
+    fn serves(&self, request: &PreviewRequest, classes: &YarnClasses) -> bool {
+        self.request.same_dials(request)
+            && self.classes.pairs == classes.pairs
+            && self.classes.pitch == classes.pitch
+    }
+}
+
+/// What a full cloth still needs.
+enum Wanted {
+    /// Some exemplars.
+    Exemplars(Box<UnfinishedCloth>),
+    /// Everything.
+    All,
+}
+
+/// The best cloth at hand for a request, and whether it is the full one.
+pub(super) fn cloth_of(
+    desk: &Arc<Desk>,
+    request: &PreviewRequest,
+    job: &Job,
+    coarse: &mut Option<Kept>,
+) -> Result<(Arc<PreparedCloth>, bool), StillError> {
+    let full = desk.lock().full.clone();
+    let wanted = match full {
+        Some((made_for, cloth)) if made_for.same_cloth(request) => return Ok((cloth, true)),
+        Some((made_for, cloth)) if made_for.same_dials(request) => {
+            match cloth.follow(&request.design, &request.drawdown, &request.still, job)? {
+                Some(Followed::Ready(cloth)) => {
+                    let cloth = Arc::new(cloth);
+                    desk.lock().full = Some((request.clone(), Arc::clone(&cloth)));
+                    return Ok((cloth, true));
+                }
+                Some(Followed::Unfinished(cloth)) => Wanted::Exemplars(Box::new(cloth)),
+                None => Wanted::All,
+            }
+        }
+        _ => Wanted::All,
+    };
+    build(desk, request, wanted);
+    Ok((coarse_cloth(desk, request, job, coarse)?, false))
+}
+
+fn coarse_cloth(
+    desk: &Desk,
+    request: &PreviewRequest,
+    job: &Job,
+    coarse: &mut Option<Kept>,
+) -> Result<Arc<PreparedCloth>, StillError> {
+    let mut still = request.still.clone();
+    still
+        .dials
+        .push(("level".to_owned(), COARSE_LEVEL.to_owned()));
+    let followed = match coarse {
+        Some((made_for, cloth)) if made_for.same_cloth(request) => return Ok(Arc::clone(cloth)),
+        Some((made_for, cloth)) if made_for.same_dials(request) => {
+            cloth.follow(&request.design, &request.drawdown, &still, job)?
+        }
+        _ => None,
+    };
+    let cloth = match followed {
+        Some(Followed::Ready(cloth)) => cloth,
+        Some(Followed::Unfinished(cloth)) => cloth.complete(&desk.store, job)?,
+        None => {
+            desk.set_phase(Phase::Preparing);
+            *coarse = None;
+            let (design, drawdown) = (&request.design, &request.drawdown);
+            still::prepare_woven(design, drawdown, &still, &desk.store, job)?
+        }
+    };
+    let cloth = Arc::new(cloth);
+    *coarse = Some((request.clone(), Arc::clone(&cloth)));
+    Ok(cloth)
+}
+
+/// Builds what the full cloth needs on a thread of its own, unless that is under way; then
+/// the last request is drawn again from it.
+fn build(desk: &Arc<Desk>, request: &PreviewRequest, wanted: Wanted) {
+    let classes = YarnClasses::new(&request.design);
+    let mut shared = desk.lock();
+    if let Some(builder) = &shared.builder {
+        if builder.serves(request, &classes) {
+            return;
+        }
+        builder.job.cancel();
+        shared.builder = None;
+        shared.building = None;
+    }
+    let job = listening(desk);
+    let builder = Builder {
+        request: request.clone(),
+        classes,
+        job: job.clone(),
+    };
+    let (thread_desk, thread_request) = (Arc::clone(desk), request.clone());
+    let spawned = std::thread::Builder::new()
+        .name("exemplars".to_owned())
+        .spawn(move || {
+            let (desk, request) = (thread_desk, thread_request);
+            let built = catch_unwind(AssertUnwindSafe(|| {
+                super::threads::behind(|| match wanted {
+                    Wanted::Exemplars(cloth) => cloth.complete(&desk.store, &job),
+                    Wanted::All => {
+                        let (design, drawdown) = (&request.design, &request.drawdown);
+                        still::prepare_woven(design, drawdown, &request.still, &desk.store, &job)
+                    }
+                })
+            }));
+            take_built(&desk, &job, request, built);
+        });
+    if spawned.is_ok() {
+        shared.builder = Some(builder);
+    }
+}
+
+/// A job that tells the desk how far it is.
+fn listening(desk: &Arc<Desk>) -> Job {
+    let report_to = Arc::clone(desk);
+    Job::new().with_listener(move |stage, fraction| {
+        let mut shared = report_to.lock();
+        if shared.builder.is_some() {
+            shared.building = Some(Building {
+                stage: stage.to_owned(),
+                fraction,
+            });
+        }
+        drop(shared);
+        (report_to.wake)();
+    })
+}
+
+fn take_built(
+    desk: &Desk,
+    job: &Job,
+    request: PreviewRequest,
+    built: std::thread::Result<Result<PreparedCloth, StillError>>,
+) {
+    let mut shared = desk.lock();
+    if job.check().is_err() {
+        return;
+    }
+    shared.builder = None;
+    shared.building = None;
+    match built {
+        Ok(Ok(cloth)) => {
+            shared.full = Some((request, Arc::new(cloth)));
+            if let Some(current) = &shared.current {
+                current.job.cancel();
+            }
+            if shared.next.is_none() {
+                shared.next = shared.last.clone();
+            }
+        }
+        // The coarse cloth stays; what stands in the way of the full one is said.
+        Ok(Err(error)) => shared.failure = Some(error.to_string()),
+        Err(_) => {
+            shared.failure = Some(
+                "the exemplars: building them failed unexpectedly: try another sett".to_owned(),
+            );
+        }
+    }
+    drop(shared);
+    desk.bell.notify_one();
+    (desk.wake)();
+}
