@@ -19,13 +19,13 @@ fn design(name: &str) -> Arc<Design> {
 
 fn request(view: View, light: &str) -> StillRequest {
     StillRequest {
-        width: 600,
-        height: 400,
+        width: 360,
+        height: 240,
         view,
         light: LightChoice::Preset(light.to_owned()),
         dials: vec![("level".to_owned(), "1".to_owned())],
         stop: Stop {
-            spp: Some(16),
+            spp: Some(12),
             ..Stop::default()
         },
         ..StillRequest::default()
@@ -84,7 +84,7 @@ fn first_sight_resembles_the_converged_picture() {
         let design = design(name);
         let mut request = request(view, light);
         // About what a pane shows: twelve pixels a crossing.
-        request.width_mm = Some(50.0 * design.sett().ends.mean_pitch_mm());
+        request.width_mm = Some(30.0 * design.sett().ends.mean_pitch_mm());
         let cloth = prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
         let traced = looked(&request, &picture(&cloth, &request, name));
         let seen = looked(&request, &picture(&first(&design), &request, name));
@@ -124,7 +124,7 @@ fn an_edit_changes_only_what_is_beside_it() {
         .chunks(4)
         .zip(after.chunks(4))
         .filter(|(a, b)| a != b);
-    let share = changed.count() as f64 / (600.0 * 400.0);
+    let share = changed.count() as f64 / (360.0 * 240.0);
     // The crossing and its four neighbours, of 4 × 2.
     assert!((0.2..0.75).contains(&share), "{share}");
     assert!(before == draw(drawdown));

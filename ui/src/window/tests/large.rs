@@ -56,7 +56,7 @@ fn the_largest_loom_file_is_painted_in() {
         window.run_steps(5);
         window.state_mut().spent.clear();
         let at = |window: &Window, step: i64| {
-            let cell = (2500 + 3 * step, 3150 + step % 7);
+            let cell = (2540 + step, 3150 + step % 7);
             (cell, window.state().draft.place_of(cell))
         };
         let (first, place) = at(&window, 0);
@@ -96,9 +96,11 @@ fn the_largest_loom_file_is_painted_in() {
         window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         window.run_steps(3);
         assert!(!window.state().document().expect("open").is_modified());
-        for _ in 0..9 {
-            window.key_press(Key::Plus);
-            window.step();
+        for _ in 0..20 {
+            if window.state().draft.cell() < 4.0 {
+                window.key_press(Key::Plus);
+                window.step();
+            }
         }
     }
 }
