@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::levels::{Extinction, LevelCorrection};
 use super::window::Window;
-use crate::design::{Design, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps};
+use crate::design::{
+    Design, Family, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps,
+};
 use crate::exemplar::{
     Allowance, BlockMajorants, ExemplarError, ExemplarSet, Pair, VoxelGrid, common_grid, quantise,
 };
@@ -27,6 +30,9 @@ pub struct ClothSettings {
     pub tap: bool,
     /// Shear fibre directions by the slope of the edge fixing. Off (crude): keep them.
     pub shear: bool,
+    /// Correct levels above 0 for what averaging does to light. Off (crude): take them as
+    /// they are.
+    pub correct_levels: bool,
 }
 
 impl Default for ClothSettings {
@@ -36,6 +42,7 @@ impl Default for ClothSettings {
             level: 0,
             tap: true,
             shear: true,
+            correct_levels: true,
         }
     }
 }
@@ -124,6 +131,29 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
+/// The correction of a family's light and density on a grid, where it is wanted.
+fn correction(
+    family: Family,
+    grid: &VoxelGrid,
+    settings: &ClothSettings,
+) -> Option<LevelCorrection> {
+    (settings.correct_levels).then(|| LevelCorrection::of(family, grid))?
+}
+
+/// The corrections of the light of a design's yarns; none at level 0.
+pub(super) fn corrections(
+    design: &Design,
+    grid: &VoxelGrid,
+    settings: &ClothSettings,
+) -> Vec<Option<LevelCorrection>> {
+    if grid.level == 0 || !settings.correct_levels {
+        return Vec::new();
+    }
+    (design.yarns().iter())
+        .map(|yarn| correction(yarn.family, grid, settings))
+        .collect()
+}
+
 /// SGGX roughness of a yarn's fibres.
 pub(super) fn roughness(yarn: &Yarn) -> f32 {
     yarn.alpha().clamp(0.01, 1.0)
@@ -160,8 +190,10 @@ pub struct ClothVolume {
     pub(super) ends: Positions,
     pub(super) picks: Positions,
     pub(super) grid: VoxelGrid,
-    /// Extinction of a voxel wholly inside fibre, by set: warp, weft.
-    pub(super) full: Vec<[f32; 2]>,
+    /// Extinction by fill, by set: warp, weft.
+    pub(super) extinction: Arc<[[Extinction; 2]]>,
+    /// What corrects the light of each yarn; empty at level 0.
+    pub(super) corrections: Vec<Option<LevelCorrection>>,
     /// SGGX roughness by yarn.
     pub(super) alpha: Vec<f32>,
     /// Single-scattering albedo by yarn.
@@ -243,11 +275,17 @@ impl ClothVolume {
     ) -> Result<Self, ClothError> {
         let SynthesisSettings { seed, patch, .. } = settings.synthesis;
         let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
-        let full = (sets.iter())
-            .map(|set| [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction))
+        let grid = sets.first().map_or_else(VoxelGrid::default, |set| set.grid);
+        let extinction = (sets.iter())
+            .map(|set| {
+                [&set.pair.warp, &set.pair.weft].map(|recipe| {
+                    let correction = correction(recipe.family, &grid, &settings);
+                    Extinction::new(recipe.full_extinction(), correction.as_ref())
+                })
+            })
             .collect();
         Ok(Self {
-            grid: sets.first().map_or_else(VoxelGrid::default, |set| set.grid),
+            grid,
             catalogue,
             sets,
             classes,
@@ -259,7 +297,8 @@ impl ClothVolume {
             maps: design.maps().clone(),
             ends: design.end_positions(),
             picks: design.pick_positions(),
-            full,
+            extinction,
+            corrections: corrections(design, &grid, &settings),
             alpha: design.yarns().iter().map(roughness).collect(),
             albedo,
             settings,
@@ -319,8 +358,27 @@ impl ClothVolume {
         if alike {
             self.recolour(design.yarns().iter().map(super::colour::albedo).collect());
             self.alpha = design.yarns().iter().map(roughness).collect();
+            self.corrections = corrections(design, &self.grid, &self.settings);
         }
         alike
+    }
+
+    /// The same cloth with other corrections of its level, one a yarn's family: for
+    /// measuring them. Level 0 is never corrected.
+    pub fn with_corrections(mut self, of: impl Fn(Family) -> LevelCorrection) -> Self {
+        if self.grid.level > 0 {
+            self.extinction = (self.sets.iter())
+                .map(|set| {
+                    [&set.pair.warp, &set.pair.weft].map(|recipe| {
+                        Extinction::new(recipe.full_extinction(), Some(&of(recipe.family)))
+                    })
+                })
+                .collect();
+            for correction in self.corrections.iter_mut().flatten() {
+                *correction = of(correction.family);
+            }
+        }
+        self
     }
 
     /// The assignment and its randomisation.

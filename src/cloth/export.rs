@@ -254,8 +254,8 @@ impl VoxelSource for ClothWindow<'_> {
     }
 
     fn densest(&self) -> f32 {
-        let all = self.cloth.full.iter().flatten();
-        all.fold(0.0, |top: f32, &sigma| top.max(sigma))
+        let all = self.cloth.extinction.iter().flatten();
+        all.fold(0.0, |top: f32, extinction| top.max(extinction.most()))
     }
 
     fn fill(&self, cells: CellBox, voxels: &mut [SourceVoxel]) {

@@ -178,8 +178,8 @@ impl ClothVolume {
         let place = [source.corner[0] + x, source.corner[1] + y, height as usize];
         let voxel = source.volume.get(place[0], place[1], place[2]);
         let weft = voxel.is_weft();
-        let full = self.full[usize::from(crossing.block.set)][usize::from(weft)];
-        let sigma = f32::from(voxel.fill()) * (1.0 / 255.0) * full;
+        let sigma =
+            self.extinction[usize::from(crossing.block.set)][usize::from(weft)].at(voxel.fill());
         if !(sigma > 0.0 && sigma >= least) {
             return Voxel::EMPTY;
         }

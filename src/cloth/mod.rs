@@ -17,6 +17,7 @@ mod face_table;
 mod follow;
 mod hair_cells;
 mod hairs;
+pub mod levels;
 mod lookup;
 mod walk;
 mod window;

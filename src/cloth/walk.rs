@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::build::ClothVolume;
 use super::lookup::Crossing;
 use crate::exemplar::{CELL, cell_of};
-use crate::render::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
+use crate::render::{Arrival, Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
 
 /// Half the side of the largest cloth, mm: rays leave it at last.
 const REACH_MM: f32 = 4000.0;
@@ -85,6 +85,14 @@ impl Medium for ClothVolume {
             .get(optics as usize)
             .copied()
             .unwrap_or(Vec3::ZERO)
+    }
+
+    #[inline]
+    fn gain(&self, arrival: &Arrival) -> f32 {
+        match self.corrections.get(arrival.optics as usize) {
+            Some(Some(correction)) => correction.gain(arrival),
+            _ => 1.0,
+        }
     }
 }
 
@@ -198,7 +206,7 @@ impl MajorantWalk for ClothWalk<'_> {
                 .cloth
                 .majorants
                 .block(crossing.block.set, crossing.block.block);
-            let full = self.cloth.full[usize::from(crossing.block.set)];
+            let [warp, weft] = &self.cloth.extinction[usize::from(crossing.block.set)];
             // Pass over empty cells.
             loop {
                 let cells = &mut self.cells;
@@ -226,7 +234,7 @@ impl MajorantWalk for ClothWalk<'_> {
                 }
                 let until = self.t;
                 if fill > 0 && until > start {
-                    let majorant = f32::from(fill) * (1.0 / 255.0) * full[0].max(full[1]);
+                    let majorant = warp.at(fill).max(weft.at(fill));
                     return Some(Stretch {
                         start,
                         end: until,

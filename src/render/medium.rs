@@ -100,6 +100,28 @@ pub trait Medium: Sync {
 
     /// Single-scattering albedo (linear RGB) of an optics id that a voxel carried.
     fn albedo(&self, optics: u32) -> Vec3;
+
+    /// What a medium that stands for a finer one multiplies the light with that it sends
+    /// to the eye; 1 for one that stands for itself.
+    #[inline]
+    fn gain(&self, _: &Arrival) -> f32 {
+        1.0
+    }
+}
+
+/// The last scattering on the way from a light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// How often the light was scattered.
+    pub order: u32,
+    /// Optics id of the voxel that scattered it last (first, as the light goes).
+    pub optics: u32,
+    /// Its fibre, unit.
+    pub fibre: Vec3,
+    /// Where the path went on to the eye, unit.
+    pub to_eye: Vec3,
+    /// Where the light came from, unit.
+    pub to_light: Vec3,
 }
 
 impl<M: Medium> Medium for &M {
@@ -118,6 +140,11 @@ impl<M: Medium> Medium for &M {
 
     fn albedo(&self, optics: u32) -> Vec3 {
         (**self).albedo(optics)
+    }
+
+    #[inline]
+    fn gain(&self, arrival: &Arrival) -> f32 {
+        (**self).gain(arrival)
     }
 }
 

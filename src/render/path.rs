@@ -12,7 +12,7 @@ use super::counters::Counters;
 use super::environment::{Environment, luminance};
 use super::film::{FirstHit, Sample};
 use super::light::Sun;
-use super::medium::Ray;
+use super::medium::{Arrival, Ray};
 use super::random::Random;
 use super::settings::Background;
 use super::track::{SECOND, Scatterer};
@@ -45,8 +45,13 @@ impl Plane {
 pub trait Tally {
     /// The albedo by which a path is dimmed at a collision.
     fn albedo<S: Scatterer>(&self, scatterer: &S, optics: u32) -> Vec3;
-    /// Takes light that was scattered `order` times.
+    /// Takes light that was scattered `order` times, by a sheet last or (0) not at all.
     fn add(&mut self, order: u32, light: Vec3);
+    /// Takes light that a voxel scattered last.
+    #[inline]
+    fn add_from<S: Scatterer>(&mut self, _: &S, arrival: &Arrival, light: Vec3) {
+        self.add(arrival.order, light);
+    }
 }
 
 /// The sum over all orders.
@@ -62,6 +67,11 @@ impl Tally for Total {
     #[inline]
     fn add(&mut self, _: u32, light: Vec3) {
         self.0 += light;
+    }
+
+    #[inline]
+    fn add_from<S: Scatterer>(&mut self, scatterer: &S, arrival: &Arrival, light: Vec3) {
+        self.0 += light * scatterer.gain(arrival);
     }
 }
 
@@ -110,7 +120,7 @@ pub struct Path<'s, S, E, const SHADOWS: bool, const PLANE: bool> {
 /// What scatters light at a vertex of a path.
 #[derive(Clone, Copy)]
 enum Vertex {
-    Fibre(super::sggx::Fibre),
+    Fibre(super::sggx::Fibre, u32),
     Sheet(f32),
 }
 
@@ -119,8 +129,33 @@ impl Vertex {
     #[inline]
     fn value(&self, wi: Vec3, wo: Vec3) -> f32 {
         match self {
-            Self::Fibre(fibre) => fibre.phase(wi, wo),
+            Self::Fibre(fibre, _) => fibre.phase(wi, wo),
             Self::Sheet(facing) => (wo.z * facing).max(0.0) / PI,
+        }
+    }
+
+    /// Gives `tally` light of an order that came from `wo` and goes on to `wi`.
+    #[inline]
+    fn pass<S: Scatterer, T: Tally>(
+        &self,
+        scatterer: &S,
+        [wi, wo]: [Vec3; 2],
+        order: u32,
+        light: Vec3,
+        tally: &mut T,
+    ) {
+        match *self {
+            Self::Fibre(fibre, optics) => {
+                let arrival = Arrival {
+                    order,
+                    optics,
+                    fibre: fibre.direction,
+                    to_eye: wi,
+                    to_light: wo,
+                };
+                tally.add_from(scatterer, &arrival, light);
+            }
+            Self::Sheet(_) => tally.add(order, light),
         }
     }
 
@@ -128,7 +163,7 @@ impl Vertex {
     #[inline]
     fn sample(&self, wi: Vec3, u: [f32; 2]) -> Vec3 {
         match self {
-            Self::Fibre(fibre) => fibre.sample(wi, u),
+            Self::Fibre(fibre, _) => fibre.sample(wi, u),
             Self::Sheet(facing) => {
                 let (x, y) = super::random::disk(u);
                 let z = (1.0 - x * x - y * y).max(1e-6).sqrt();
@@ -156,6 +191,8 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
         let mut order = 0u32;
         // Density with which the present direction was drawn; infinite for the camera's.
         let mut density = f32::INFINITY;
+        // What scattered last, and from where it was come upon.
+        let mut last = None;
         loop {
             let sheet = if PLANE {
                 self.plane.distance(&ray)
@@ -170,7 +207,10 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                         sample.first = Some(first_hit(&ray, &hit, albedo));
                     }
                     throughput *= albedo;
-                    (ray.at(hit.t), Vertex::Fibre(hit.voxel.fibre()))
+                    (
+                        ray.at(hit.t),
+                        Vertex::Fibre(hit.voxel.fibre(), hit.voxel.optics),
+                    )
                 }
                 None if sheet < f32::INFINITY => {
                     sample.alpha = 1.0;
@@ -183,9 +223,12 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                     (point, Vertex::Sheet(self.plane.facing))
                 }
                 None => {
-                    if order == 0 {
+                    let Some((vertex, wi)) = last else {
                         self.add_background(&ray, tally, &mut sample);
-                    } else if E::LIT {
+                        break;
+                    };
+                    let vertex: Vertex = vertex;
+                    if E::LIT {
                         let towards = ray.direction * self.turn;
                         let weight = if E::SAMPLED {
                             power(density, self.environment.density(towards))
@@ -193,7 +236,8 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                             1.0
                         };
                         let light = self.environment.radiance(towards);
-                        tally.add(order, throughput * light * weight);
+                        let light = throughput * light * weight;
+                        vertex.pass(self.scatterer, [wi, ray.direction], order, light, tally);
                     }
                     break;
                 }
@@ -225,6 +269,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
             } else if !E::LIT && order == self.max_order {
                 break;
             }
+            last = Some((vertex, wi));
             ray = Ray {
                 origin: point,
                 direction: wo,
@@ -272,7 +317,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
             let light = throughput * sun.irradiance * vertex.value(wi, wo);
             let shade = self.unblocked(point, wo, luminance(light), random, counters);
             if shade > 0.0 {
-                tally.add(order, light * shade);
+                vertex.pass(self.scatterer, [wi, wo], order, light * shade, tally);
             }
         }
     }
@@ -302,7 +347,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
         let light = throughput * drawn.radiance * (value * weight);
         let shade = self.unblocked(point, wo, luminance(light), random, counters);
         if shade > 0.0 {
-            tally.add(order, light * shade);
+            vertex.pass(self.scatterer, [wi, wo], order, light * shade, tally);
         }
     }
 

@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use super::counters::Counters;
-use super::medium::{Bounds, Ray};
+use super::medium::{Arrival, Bounds, Ray};
 use super::random::Random;
 use super::track::{Collision, Scatterer};
 
@@ -134,5 +134,10 @@ impl<S: Scatterer> Scatterer for Stack<'_, S> {
 
     fn albedo(&self, optics: u32) -> Vec3 {
         self.layer.albedo(optics)
+    }
+
+    #[inline]
+    fn gain(&self, arrival: &Arrival) -> f32 {
+        self.layer.gain(arrival)
     }
 }

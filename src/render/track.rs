@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::counters::Counters;
-use super::medium::{Bounds, MajorantWalk, Medium, Ray, Voxel};
+use super::medium::{Arrival, Bounds, MajorantWalk, Medium, Ray, Voxel};
 use super::random::{Random, free_path};
 use super::sggx::Fibre;
 
@@ -66,6 +66,12 @@ pub trait Scatterer: Sync {
 
     /// Single-scattering albedo (linear RGB) of an optics id that a voxel carried.
     fn albedo(&self, optics: u32) -> Vec3;
+
+    /// As [`Medium::gain`].
+    #[inline]
+    fn gain(&self, _: &Arrival) -> f32 {
+        1.0
+    }
 }
 
 /// A ray worth walking: finite origin, unit direction, an end that is a number.
@@ -201,6 +207,11 @@ impl<M: Medium> Scatterer for M {
     fn albedo(&self, optics: u32) -> Vec3 {
         Medium::albedo(self, optics)
     }
+
+    #[inline]
+    fn gain(&self, arrival: &Arrival) -> f32 {
+        Medium::gain(self, arrival)
+    }
 }
 
 /// No medium at all; with it, an absent layer costs nothing.
@@ -291,6 +302,18 @@ impl<A: Scatterer, B: Scatterer> Scatterer for Both<A, B> {
             self.1.albedo(optics & !SECOND)
         } else {
             self.0.albedo(optics)
+        }
+    }
+
+    #[inline]
+    fn gain(&self, arrival: &Arrival) -> f32 {
+        if arrival.optics & SECOND != 0 {
+            self.1.gain(&Arrival {
+                optics: arrival.optics & !SECOND,
+                ..*arrival
+            })
+        } else {
+            self.0.gain(arrival)
         }
     }
 }

@@ -55,7 +55,7 @@ pub struct Dial {
 }
 
 /// The dials.
-pub const DIALS: [Dial; 11] = [
+pub const DIALS: [Dial; 12] = [
     Dial {
         name: "denoise",
         values: "off or on",
@@ -75,6 +75,10 @@ pub const DIALS: [Dial; 11] = [
     Dial {
         name: "level",
         values: "4 to 0",
+    },
+    Dial {
+        name: "level-correction",
+        values: "off or on",
     },
     Dial {
         name: "order",
@@ -175,6 +179,7 @@ pub(super) fn turn(
                 depth(value).ok_or_else(wrong)?;
             }
             "level" => cloth.level = number(0, 4)?,
+            "level-correction" => cloth.correct_levels = switch(value).ok_or_else(wrong)?,
             "order" => render.max_order = number(1, 4096)?,
             "roulette-order" if value == "never" => render.roulette_order = u32::MAX,
             "roulette-order" => render.roulette_order = number(1, 4096)?,
@@ -277,6 +282,7 @@ mod tests {
     #[test]
     fn dials_turn_what_they_name() {
         assert_eq!(set("level", "2").unwrap().0.level, 2);
+        assert!(!set("level-correction", "off").unwrap().0.correct_levels);
         assert_eq!(set("rank", "exact").unwrap().0.synthesis.rank, Rank::Exact);
         assert_eq!(set("order", "7").unwrap().1.max_order, 7);
         let bits = |value: &str| png_depth(&[("png-bits".to_owned(), value.to_owned())]);
