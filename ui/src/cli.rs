@@ -7,6 +7,7 @@ use pickglass::design::{Family, Srgb};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use crate::values::{self, Dial, PicturePath, SettArg, Size, VolumePath};
+use crate::window::Restarts;
 use pickglass::cloth::Region;
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::still::{EffectChoice, LightChoice};
@@ -36,6 +37,15 @@ pub struct WindowArgs {
     /// Close the window after this many frames
     #[arg(long, hide = true, value_name = "N")]
     pub smoke_frames: Option<u32>,
+    /// Lose the graphics device after this many frames
+    #[arg(long, hide = true, value_name = "N")]
+    pub smoke_lose_device: Option<u32>,
+    /// Open this recovery copy
+    #[arg(long, hide = true, value_name = "COPY", conflicts_with = "design")]
+    pub recover: Option<PathBuf>,
+    /// When the program started itself again, in seconds since 1970
+    #[arg(long, hide = true, value_name = "SECONDS,…")]
+    pub restarted: Option<Restarts>,
 }
 
 #[derive(Debug, Subcommand)]

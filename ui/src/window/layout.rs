@@ -7,6 +7,7 @@ use egui::{Id, Ui, WidgetText};
 use egui_tiles::{Behavior, Container, Linear, LinearDir, Tile, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
 
+use super::focus;
 use super::panes::Pane;
 use crate::tokens;
 
@@ -121,6 +122,19 @@ impl Behavior<Pane> for Shown<'_> {
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
         pane.title().into()
+    }
+
+    fn on_tab_button(
+        &mut self,
+        _tiles: &mut Tiles<Pane>,
+        _tile: TileId,
+        tab: egui::Response,
+    ) -> egui::Response {
+        if tab.has_focus() {
+            let painter = tab.ctx.layer_painter(tab.layer_id);
+            focus::ring(&painter, tab.rect, &tokens::Palette::of(tab.ctx.theme()));
+        }
+        tab
     }
 
     fn gap_width(&self, _style: &egui::Style) -> f32 {

@@ -347,11 +347,18 @@ fn gestures_ui(ui: &mut egui::Ui) {
                 ("Space or middle", "Move what is seen"),
                 ("Wheel", "Zoom at the pointer"),
                 ("Hold a tool's key", "That tool until the key is let go"),
-                ("Arrow keys", "Draft: move the cell cursor. Cloth: move it"),
+                (
+                    "Arrow keys",
+                    "Draft: move the cell cursor, with Ctrl by 8. Cloth: move it",
+                ),
+                ("Shift+arrows", "Draft: make a range from the cursor on"),
                 (
                     "Space, Enter",
-                    "Draft: exchange warp and weft at the cursor",
+                    "Draft: exchange warp and weft at the cursor, or paint the range; with \
+                     Shift the other paint",
                 ),
+                ("Menu, Shift+F10", "Draft: its menu"),
+                ("Tab", "From one field or button to the next"),
                 ("Esc", "Give up the gesture, or forget the selection"),
             ] {
                 ui.label(RichText::new(gesture).monospace());

@@ -30,6 +30,8 @@ pub struct Settings {
     pub ghosts: bool,
     pub long_floats: bool,
     pub navigator: bool,
+    /// Millimetres a point of the screen, where a card was held against it.
+    pub mm_per_point: Option<f32>,
 }
 
 impl Default for Settings {
@@ -43,6 +45,7 @@ impl Default for Settings {
             ghosts: true,
             long_floats: false,
             navigator: false,
+            mm_per_point: None,
         }
     }
 }
