@@ -167,6 +167,16 @@ pub fn apply(ctx: &egui::Context) {
     }
 }
 
+/// Buttons of menus: no frames, except of the one with the keyboard.
+pub fn menu(style: &mut egui::Style) {
+    egui::containers::menu::menu_style(style);
+    let focus = Palette::of(match style.visuals.dark_mode {
+        true => Theme::Dark,
+        false => Theme::Light,
+    });
+    style.visuals.widgets.active.bg_stroke = Stroke::new(FOCUS, focus.focus);
+}
+
 fn text_styles() -> BTreeMap<TextStyle, FontId> {
     let face = |size| FontId::new(size, FontFamily::Proportional);
     BTreeMap::from([

@@ -103,11 +103,24 @@ fn whole(tree: &Tree<Pane>) -> bool {
         }
         match tree.tiles.get(id) {
             Some(Tile::Pane(pane)) => found.push(*pane),
-            Some(Tile::Container(container)) => next.extend(container.children_vec()),
+            Some(Tile::Container(container)) if sound(container) => {
+                next.extend(container.children_vec());
+            }
+            Some(Tile::Container(_)) => return false,
             None => return false,
         }
     }
     found.len() == Pane::ALL.len() && Pane::ALL.iter().all(|pane| found.contains(pane))
+}
+
+/// Whether every part of a container has some room.
+fn sound(container: &Container) -> bool {
+    let some = |share: &f32| (1e-6..=1e6).contains(share);
+    match container {
+        Container::Linear(linear) => linear.shares.iter().all(|(_, share)| some(share)),
+        Container::Grid(grid) => grid.col_shares.iter().chain(&grid.row_shares).all(some),
+        Container::Tabs(_) => true,
+    }
 }
 
 struct Shown<'s> {

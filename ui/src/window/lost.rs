@@ -113,10 +113,17 @@ pub fn follow(rescued: &Rescued, restarts: &Restarts, more: &[OsString]) -> (i32
         Next::Again(arguments) => arguments,
         Next::Stop(line) => return (1, line),
     };
+    let on = match rescued {
+        Rescued::Copy(path) | Rescued::File(path) => format!(" on {}", path.display()),
+        Rescued::Nothing | Rescued::Failed(_) => String::new(),
+    };
     let started = std::env::current_exe()
         .and_then(|program| Command::new(program).args(arguments).args(more).spawn());
     match started {
-        Ok(_) => (0, "the graphics device was lost: started again".to_owned()),
+        Ok(_) => (
+            0,
+            format!("the graphics device was lost: started again{on}"),
+        ),
         Err(error) => (
             1,
             format!(

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use egui::containers::menu::MenuConfig;
 use egui::{Button, Grid, Id, KeyboardShortcut, MenuBar, Modal, Modifiers, RichText};
 use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
@@ -100,7 +101,9 @@ impl Situation<'_> {
 /// Shows the menu bar with the design's name at its end.
 pub fn show(ui: &mut egui::Ui, situation: &Situation<'_>, title: &str) -> Option<Choice> {
     let mut choice = None;
-    MenuBar::new().ui(ui, |ui| {
+    let config = MenuConfig::new().style(tokens::menu);
+    let bar = MenuBar::new().style(tokens::menu).config(config);
+    bar.ui(ui, |ui| {
         for menu in Menu::ALL {
             ui.menu_button(menu.title(), |ui| {
                 choice = menu_ui(ui, menu, situation).or(choice.take());

@@ -106,7 +106,8 @@ impl SettingsFile {
             Ok(()) => format!("it was kept as {}", kept.display()),
             Err(_) => "it will be written over".to_owned(),
         };
-        let file = path.display();
+        let problem: Vec<&str> = problem.split_whitespace().collect();
+        let (file, problem) = (path.display(), problem.join(" "));
         format!("{file}: the settings are damaged ({problem}); the usual ones are used, {kept}")
     }
 

@@ -228,9 +228,10 @@ impl DraftPane {
                 let button = ui.button(row.label).on_hover_text(row.tip);
                 if button.clicked() {
                     actions.push(Action::Command(command));
+                    ui.close();
                 }
-                // The arrow keys go on from there.
-                if wanted && place == 0 {
+                // The menu has the keyboard as long as it is open.
+                if place == 0 && ui.memory(|memory| memory.has_focus(response.id)) {
                     button.request_focus();
                 }
             }

@@ -55,8 +55,8 @@ pub struct Zone {
     id: Option<egui::Id>,
     /// The pointer was used last: the keyboard's cursor would only be in the way.
     by_pointer: bool,
-    /// Space was used to move the view: letting it go paints nothing.
-    space_used: bool,
+    /// Space went down here and has not moved the view: letting it go paints.
+    space_held: bool,
 }
 
 impl Zone {
@@ -87,7 +87,7 @@ impl Zone {
 
     /// Says that Space moved the view.
     pub fn space_used(&mut self) {
-        self.space_used = true;
+        self.space_held = false;
     }
 
     /// Makes a field of the screen; `to_cell` tells the cell under a point.
@@ -257,7 +257,7 @@ impl Zone {
     ) {
         match (key, pressed) {
             (Key::Space, true) if struck => {
-                self.space_used = false;
+                self.space_held = true;
                 return;
             }
             (Key::Escape, true) => {
@@ -265,7 +265,7 @@ impl Zone {
                 return;
             }
             (Key::Enter, true) if struck => {}
-            (Key::Space, false) if !self.space_used => {}
+            (Key::Space, false) if std::mem::take(&mut self.space_held) => {}
             _ => return,
         }
         self.by_pointer = false;
