@@ -233,7 +233,8 @@ impl App {
         let phase = self.preview.phase();
         let document = self.session.as_ref().map(|session| &session.document);
         let crossing = document.zip(self.hover).and_then(|(document, at)| {
-            crossing::describe(document, at, self.draft.show.arrangement)
+            let arrangement = self.draft.show.arrangement;
+            crossing::describe(document, at, arrangement, self.draft.limits)
         });
         let cancel = status::show(
             ui,

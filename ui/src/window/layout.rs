@@ -150,6 +150,19 @@ impl Behavior<Pane> for Shown<'_> {
         tab
     }
 
+    fn tab_outline_stroke(
+        &self,
+        visuals: &egui::Visuals,
+        _tiles: &Tiles<Pane>,
+        _tile: TileId,
+        state: &egui_tiles::TabState,
+    ) -> egui::Stroke {
+        match state.active {
+            true => visuals.widgets.noninteractive.bg_stroke,
+            false => egui::Stroke::NONE,
+        }
+    }
+
     fn gap_width(&self, _style: &egui::Style) -> f32 {
         tokens::GRID
     }

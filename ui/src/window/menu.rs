@@ -171,9 +171,11 @@ fn recent_ui(ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
         }
         for path in recent {
             let name = path.file_name().unwrap_or(path.as_os_str());
-            let button = Button::new(name.to_string_lossy());
+            let there = path.exists();
+            let gone = if there { "" } else { " (not there any more)" };
+            let button = Button::new(format!("{}{gone}", name.to_string_lossy()));
             // A file that is gone stays listed, greyed, until newer ones push it out.
-            let shown = ui.add_enabled(path.exists(), button);
+            let shown = ui.add_enabled(there, button);
             if shown.on_hover_text(path.display().to_string()).clicked() {
                 choice = Some(Choice::Recent(path.clone()));
                 ui.close();
