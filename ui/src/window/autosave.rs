@@ -15,6 +15,8 @@ use super::task::{Outcome, Task};
 
 /// Changed work is on the disk after at most about this long; 10 s are promised.
 const EVERY: Duration = Duration::from_secs(5);
+// The other half is for the writing.
+const _: () = assert!(EVERY.as_secs() <= 5);
 
 /// Where recovery copies are; `None` = none are kept.
 #[derive(Debug, Clone, Default)]
