@@ -457,6 +457,19 @@ mod tests {
     }
 
     #[test]
+    fn a_program_that_starts_itself_again_is_understood() {
+        let line = "pickglass --restarted 1763800000,1763800007 --recover /r/a.recovery";
+        let cli = Cli::try_parse_from(line.split_whitespace()).expect("a right command line");
+        let restarts = cli.window.restarted.expect("times");
+        assert_eq!(restarts.to_string(), "1763800000,1763800007");
+        for wrong in ["--restarted now", "--recover /r/a.recovery twill"] {
+            let line = format!("pickglass {wrong}");
+            let error = Cli::try_parse_from(line.split_whitespace()).expect_err("wrong usage");
+            assert_eq!(error.exit_code(), 2, "{wrong}");
+        }
+    }
+
+    #[test]
     fn two_ways_to_stop_are_wrong_usage() {
         let line = "pickglass still twill -o a.png --spp 4 --seconds 2";
         let error = Cli::try_parse_from(line.split_whitespace()).expect_err("exclusive");

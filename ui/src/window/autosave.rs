@@ -180,6 +180,11 @@ impl Autosave {
         *open = session.map(Open::of);
     }
 
+    fn has_unsaved(&self) -> bool {
+        let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.as_ref().is_some_and(|open| open.modified)
+    }
+
     /// Who brings what is open to safety when the window is lost.
     pub fn rescuer(&mut self) -> Option<Rescuer> {
         self.start();
@@ -261,6 +266,10 @@ impl Open {
 
 impl Drop for Autosave {
     fn drop(&mut self) {
+        // What breaks the window costs nothing of the work.
+        if std::thread::panicking() && self.has_unsaved() {
+            self.send(Order::Rescue(Arc::new(|_| {})));
+        }
         self.finish();
     }
 }

@@ -169,8 +169,10 @@ impl Guard {
         }
     }
 
-    /// Loses the device, to see what follows.
+    /// Loses the device, to see what follows. It is idle then, so that it says so when it
+    /// is asked next.
     pub fn destroy(&self) {
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
         self.device.destroy();
     }
 }

@@ -142,6 +142,33 @@ fn a_rescue_writes_what_is_in_no_file_and_nothing_else() {
 }
 
 #[test]
+fn a_window_that_breaks_leaves_all_of_the_work() {
+    for breaks in [false, true] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let copies = RecoveryFolder::at(folder.path().to_owned());
+        let design = Design::clone(&blank().expect("a design").design);
+        let session = Session::unsaved(design, None);
+        let work = session.design();
+        let window = std::thread::spawn(move || {
+            let autosave = Autosave::new(&egui::Context::default(), copies);
+            autosave.note(Some(&session));
+            if breaks {
+                // As a panic, without its message.
+                std::panic::resume_unwind(Box::new("broken"));
+            }
+            drop(autosave);
+        });
+        assert_eq!(window.join().is_err(), breaks);
+        let found = recovery::list(folder.path()).found;
+        assert_eq!(found.len(), usize::from(breaks));
+        for copy in found {
+            let recovered = recovery::load(&copy.path).expect("whole");
+            assert_eq!(&recovered.design, work.as_ref());
+        }
+    }
+}
+
+#[test]
 fn a_stroke_that_is_never_ended_is_copied_all_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut window = start(folder.path(), Some("damask"));
