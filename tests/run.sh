@@ -170,6 +170,47 @@ smoke_window() {
     with_display timeout 300 "$target/release/pickglass" oxford --smoke-frames 20
 }
 
+# With a display and no adapter: the picture instead, and a line that names the packages.
+smoke_no_adapter() {
+    local folder=$scratch/no-adapter program
+    program=$(cd "$target/release" && pwd)/pickglass
+    mkdir -p "$folder"
+    (cd "$folder" && WGPU_BACKEND=vulkan VK_DRIVER_FILES=$folder/none.json \
+        with_display timeout 900 "$program" >said 2>&1) || { cat "$folder/said"; return 1; }
+    if ! grep -q 'apt-get install mesa-vulkan-drivers' "$folder/said"; then
+        cat "$folder/said"
+        return 1
+    fi
+    [[ -s $folder/cloth.png ]] || { say "   cloth.png was not written"; return 1; }
+}
+
+# A device that is lost: the program starts itself again, on the same design.
+smoke_lost_device() {
+    local folder=$scratch/lost
+    mkdir -p "$folder/home"
+    # The display stays until the second program has ended, too.
+    lose() {
+        timeout 300 "$target/release/pickglass" oxford --json --smoke-frames 30 \
+            --smoke-lose-device 5 >"$folder/said" 2>"$folder/errors" || return 1
+        for _ in $(seq 600); do
+            grep -q opened "$folder/said" && return 0
+            sleep 0.2
+        done
+        return 1
+    }
+    if ! HOME=$folder/home XDG_DATA_HOME=$folder/home XDG_CONFIG_HOME=$folder/home \
+        with_display lose; then
+        cat "$folder/said" "$folder/errors"
+        return 1
+    fi
+    # What breaks for want of the device is hushed.
+    if ! grep -q 'device was lost: started again on .*[.]recovery' "$folder/errors" ||
+        grep -q panicked "$folder/errors"; then
+        cat "$folder/errors"
+        return 1
+    fi
+}
+
 # With no display: the picture instead, and a line that says so.
 smoke_no_display() {
     local folder=$scratch/no-display program
@@ -207,6 +248,8 @@ check_all() {
     step "documentation" run_docs
     if have Xvfb; then
         step "window" smoke_window
+        step "no adapter" smoke_no_adapter
+        step "lost device" smoke_lost_device
     else
         lacks "Xvfb, and with it the check of the window"
     fi

@@ -183,6 +183,26 @@ mod tests {
         assert_eq!(names(folder.path()), ["design.ron"]);
     }
 
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_named_with_a_remedy_and_keeps_the_old_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("design.ron");
+        write(&path, b"old").unwrap();
+        // The device that is always full.
+        let failed = write_with(&path, |out| {
+            out.write_all(b"half")?;
+            std::fs::OpenOptions::new()
+                .write(true)
+                .open("/dev/full")?
+                .write_all(b"more")
+        });
+        let message = failed.unwrap_err().to_string();
+        assert!(message.contains("free some space"), "{message}");
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["design.ron"]);
+    }
+
     #[test]
     fn a_missing_folder_is_named_with_a_remedy() {
         let folder = tempfile::tempdir().unwrap();

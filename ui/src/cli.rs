@@ -7,6 +7,7 @@ use pickglass::design::{Family, Srgb};
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use crate::values::{self, Dial, PicturePath, SettArg, Size, VolumePath};
+use crate::window::Restarts;
 use pickglass::cloth::Region;
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::still::{EffectChoice, LightChoice};
@@ -36,6 +37,15 @@ pub struct WindowArgs {
     /// Close the window after this many frames
     #[arg(long, hide = true, value_name = "N")]
     pub smoke_frames: Option<u32>,
+    /// Lose the graphics device after this many frames
+    #[arg(long, hide = true, value_name = "N")]
+    pub smoke_lose_device: Option<u32>,
+    /// Open this recovery copy
+    #[arg(long, hide = true, value_name = "COPY", conflicts_with = "design")]
+    pub recover: Option<PathBuf>,
+    /// When the program started itself again, in seconds since 1970
+    #[arg(long, hide = true, value_name = "SECONDS,…")]
+    pub restarted: Option<Restarts>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -441,6 +451,19 @@ mod tests {
             "-o a.vol --level 5",
         ] {
             let line = format!("pickglass volume twill {wrong}");
+            let error = Cli::try_parse_from(line.split_whitespace()).expect_err("wrong usage");
+            assert_eq!(error.exit_code(), 2, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_program_that_starts_itself_again_is_understood() {
+        let line = "pickglass --restarted 1763800000,1763800007 --recover /r/a.recovery";
+        let cli = Cli::try_parse_from(line.split_whitespace()).expect("a right command line");
+        let restarts = cli.window.restarted.expect("times");
+        assert_eq!(restarts.to_string(), "1763800000,1763800007");
+        for wrong in ["--restarted now", "--recover /r/a.recovery twill"] {
+            let line = format!("pickglass {wrong}");
             let error = Cli::try_parse_from(line.split_whitespace()).expect_err("wrong usage");
             assert_eq!(error.exit_code(), 2, "{wrong}");
         }

@@ -99,6 +99,13 @@ pub enum Command {
     Use(Tool),
     SwapColours,
     Look(View),
+    TurnOver,
+    Straighten,
+    /// The eye goes round the cloth.
+    Orbit(Toward),
+    /// The eye goes along the cloth.
+    Pan(Toward),
+    Glass,
     Fit,
     ActualSize,
     ZoomIn,
@@ -123,17 +130,19 @@ pub enum Menu {
     Edit,
     Weave,
     Tools,
+    Cloth,
     View,
     Help,
 }
 
 impl Menu {
     /// All menus, from the left.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::File,
         Self::Edit,
         Self::Weave,
         Self::Tools,
+        Self::Cloth,
         Self::View,
         Self::Help,
     ];
@@ -145,6 +154,7 @@ impl Menu {
             Self::Edit => "Edit",
             Self::Weave => "Weave",
             Self::Tools => "Tools",
+            Self::Cloth => "Cloth",
             Self::View => "View",
             Self::Help => "Help",
         }
@@ -270,6 +280,18 @@ pub const TABLE: &[Row] = &[
     apart(row(Command::SwapColours, Menu::Tools, "Exchange the paint", "Exchange what the first and the second button paint", &[plain(Key::X)])),
     row(Command::SymmetryAcross, Menu::Tools, "Paint mirrored left and right", "What is painted left is painted right as well", &[]),
     row(Command::SymmetryAlong, Menu::Tools, "Paint mirrored top and bottom", "What is painted above is painted below as well", &[]),
+
+    row(Command::TurnOver, Menu::Cloth, "Turn the cloth over", "From the face to the back and again, as one turns a page", &[plain(Key::T)]),
+    row(Command::Straighten, Menu::Cloth, "Look straight on", "The eye above the cloth again", &[plain(Key::Num0)]),
+    apart(row(Command::Orbit(Toward::Left), Menu::Cloth, "Turn the eye left", "Round the cloth; lower the eye first", &[plain(Key::OpenBracket)])),
+    row(Command::Orbit(Toward::Right), Menu::Cloth, "Turn the eye right", "Round the cloth; lower the eye first", &[plain(Key::CloseBracket)]),
+    row(Command::Orbit(Toward::Up), Menu::Cloth, "Raise the eye", "Towards straight above the cloth", &[plain(Key::Period)]),
+    row(Command::Orbit(Toward::Down), Menu::Cloth, "Lower the eye", "Towards the edge of the cloth", &[plain(Key::Comma)]),
+    apart(row(Command::Pan(Toward::Left), Menu::Cloth, "Look further left", "Along the cloth; the arrow keys do it too while the cloth has the keyboard", &[ctrl_shift(Key::ArrowLeft)])),
+    row(Command::Pan(Toward::Right), Menu::Cloth, "Look further right", "Along the cloth", &[ctrl_shift(Key::ArrowRight)]),
+    row(Command::Pan(Toward::Up), Menu::Cloth, "Look further up", "Along the cloth", &[ctrl_shift(Key::ArrowUp)]),
+    row(Command::Pan(Toward::Down), Menu::Cloth, "Look further down", "Along the cloth", &[ctrl_shift(Key::ArrowDown)]),
+    apart(row(Command::Glass, Menu::Cloth, "Pick glass", "Ten times closer at the pointer, or in the middle, while the key is held over the cloth", &[plain(Key::Q)])),
 
     row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face, to true scale", &[ctrl(Key::Num1)]),
     row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", &[ctrl(Key::Num2)]),

@@ -17,6 +17,8 @@ pub const GRID: f32 = 4.0;
 pub const GAP: f32 = 2.0 * GRID;
 /// Space round a group.
 pub const PAD: f32 = 3.0 * GRID;
+/// Width of the frame of what has the keyboard.
+pub const FOCUS: f32 = 2.0;
 /// Corner radius of everything that has one.
 pub const RADIUS: u8 = 4;
 
@@ -53,6 +55,8 @@ pub const GRID_LINE_STRONGEST: Color32 = Color32::from_rgba_premultiplied(0, 0, 
 pub const THREAD_EDGE: Color32 = Color32::from_rgba_premultiplied(0, 0, 0, 72);
 /// Over all that is not marked.
 pub const VEIL: Color32 = Color32::from_rgba_premultiplied(70, 70, 70, 190);
+/// Buttons over the cloth while nobody is near: faint, and still to be read on any cloth.
+pub const FADED: f32 = 0.8;
 /// Row and column of the crossing under the pointer.
 pub const CROSSHAIR: Color32 = Color32::from_rgba_premultiplied(16, 34, 58, 70);
 
@@ -70,8 +74,17 @@ pub struct Palette {
     pub panel: Color32,
     /// Raised things: buttons, menus, plates over cloth.
     pub raised: Color32,
-    /// Hairlines, and raised things under the pointer.
+    /// Raised things under the pointer or with the keyboard.
+    pub lit: Color32,
+    /// Hairlines; no text stands on them.
     pub line: Color32,
+    /// Ground and text of what is chosen.
+    pub chosen: Color32,
+    pub on_chosen: Color32,
+    /// The frame of what has the keyboard, and the line beside it: one of the two is seen
+    /// on any ground, a picture's too.
+    pub focus: Color32,
+    pub focus_edge: Color32,
     /// Text that may be overlooked.
     pub quiet: Color32,
     /// Text.
@@ -92,7 +105,12 @@ impl Palette {
                 deep: Color32::from_gray(31),
                 panel: Color32::from_gray(44),
                 raised: Color32::from_gray(57),
+                lit: Color32::from_gray(70),
                 line: Color32::from_gray(80),
+                chosen: Color32::from_rgb(30, 72, 135),
+                on_chosen: Color32::WHITE,
+                focus: Color32::from_rgb(130, 180, 248),
+                focus_edge: Color32::BLACK,
                 quiet: Color32::from_gray(185),
                 text: Color32::from_gray(221),
                 warning: Color32::from_rgb(232, 176, 74),
@@ -105,7 +123,12 @@ impl Palette {
                 deep: Color32::from_gray(249),
                 panel: Color32::from_gray(238),
                 raised: Color32::from_gray(221),
+                lit: Color32::from_gray(249),
                 line: Color32::from_gray(193),
+                chosen: Color32::from_rgb(200, 221, 247),
+                on_chosen: Color32::from_rgb(20, 64, 140),
+                focus: Color32::from_rgb(20, 64, 140),
+                focus_edge: Color32::WHITE,
                 quiet: Color32::from_gray(94),
                 text: Color32::from_gray(38),
                 warning: Color32::from_rgb(138, 84, 0),
@@ -144,6 +167,16 @@ pub fn apply(ctx: &egui::Context) {
     }
 }
 
+/// Buttons of menus: no frames, except of the one with the keyboard.
+pub fn menu(style: &mut egui::Style) {
+    egui::containers::menu::menu_style(style);
+    let focus = Palette::of(match style.visuals.dark_mode {
+        true => Theme::Dark,
+        false => Theme::Light,
+    });
+    style.visuals.widgets.active.bg_stroke = Stroke::new(FOCUS, focus.focus);
+}
+
 fn text_styles() -> BTreeMap<TextStyle, FontId> {
     let face = |size| FontId::new(size, FontFamily::Proportional);
     BTreeMap::from([
@@ -176,14 +209,15 @@ fn visuals(theme: Theme, palette: Palette) -> egui::Visuals {
     visuals.warn_fg_color = palette.warning;
     visuals.error_fg_color = palette.error;
     visuals.hyperlink_color = palette.text;
-    visuals.selection.bg_fill = ACCENT;
-    visuals.selection.stroke = Stroke::new(1.0, Color32::WHITE);
+    visuals.selection.bg_fill = palette.chosen;
+    // Also the frame of a text field with the keyboard.
+    visuals.selection.stroke = Stroke::new(FOCUS, palette.on_chosen);
     for (widget, fill) in [
         (&mut visuals.widgets.noninteractive, palette.panel),
         (&mut visuals.widgets.inactive, palette.raised),
-        (&mut visuals.widgets.hovered, palette.line),
-        (&mut visuals.widgets.active, palette.line),
-        (&mut visuals.widgets.open, palette.line),
+        (&mut visuals.widgets.hovered, palette.lit),
+        (&mut visuals.widgets.active, palette.lit),
+        (&mut visuals.widgets.open, palette.lit),
     ] {
         widget.bg_fill = fill;
         widget.weak_bg_fill = fill;
@@ -192,63 +226,11 @@ fn visuals(theme: Theme, palette: Palette) -> egui::Visuals {
         widget.corner_radius = radius;
         widget.expansion = 0.0;
     }
+    // A widget with the keyboard has these.
+    visuals.widgets.active.bg_stroke = Stroke::new(FOCUS, palette.focus);
+    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, palette.quiet);
     visuals
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Relative luminance (WCAG) of an opaque colour.
-    fn luminance(colour: Color32) -> f32 {
-        let linear = egui::Rgba::from(colour);
-        0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b()
-    }
-
-    fn contrast(a: Color32, b: Color32) -> f32 {
-        let (a, b) = (luminance(a), luminance(b));
-        (a.max(b) + 0.05) / (a.min(b) + 0.05)
-    }
-
-    #[test]
-    fn text_can_be_read_on_every_plane() {
-        for theme in [Theme::Dark, Theme::Light] {
-            let palette = Palette::of(theme);
-            for plane in [palette.deep, palette.panel, palette.raised] {
-                for text in [palette.text, palette.quiet, palette.warning, palette.error] {
-                    let ratio = contrast(plane, text);
-                    assert!(ratio >= 4.5, "{theme:?} {plane:?} {text:?}: {ratio}");
-                }
-            }
-        }
-        assert!(contrast(ACCENT, Color32::WHITE) >= 4.5);
-    }
-
-    #[test]
-    fn marks_and_the_focus_are_seen() {
-        for theme in [Theme::Dark, Theme::Light] {
-            let palette = Palette::of(theme);
-            assert!(contrast(palette.ink, palette.paper) >= 4.5);
-            // What is no text needs 3 (WCAG 2.2, 1.4.11).
-            for plane in [palette.deep, palette.panel] {
-                assert!(contrast(ACCENT, plane) >= 3.0, "{theme:?} {plane:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn greys_are_neutral() {
-        for theme in [Theme::Dark, Theme::Light] {
-            let palette = Palette::of(theme);
-            for grey in [
-                palette.deep,
-                palette.panel,
-                palette.raised,
-                palette.text,
-                SURROUND,
-            ] {
-                assert!(grey.r() == grey.g() && grey.g() == grey.b());
-            }
-        }
-    }
-}
+mod tests;

@@ -362,6 +362,22 @@ fn errors_are_one_line_and_exit_1() {
 }
 
 #[test]
+fn work_that_no_window_can_show_is_named_and_left_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("design-1.recovery");
+    std::fs::write(&copy, "work").expect("written");
+    let output = pickglass(folder.path(), &["--recover", "design-1.recovery"]);
+    let line = refused(&output, 1);
+    assert!(
+        line.contains("design-1.recovery") && line.contains("no display"),
+        "{line}"
+    );
+    assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+    assert_eq!(std::fs::read(&copy).expect("read"), b"work");
+    assert!(!folder.path().join("cloth.png").exists());
+}
+
+#[test]
 fn wrong_usage_exits_2() {
     let folder = tempfile::tempdir().expect("a folder");
     for line in [

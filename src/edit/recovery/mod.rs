@@ -263,7 +263,11 @@ fn alive(path: &Path) -> bool {
     }
 }
 
-fn describe(path: &Path) -> Result<Found, RecoveryError> {
+/// What is known of a copy without reading its design, whether its program runs or not.
+///
+/// # Errors
+/// [`RecoveryError`] if it cannot be read or is no copy.
+pub fn describe(path: &Path) -> Result<Found, RecoveryError> {
     let unreadable = |source| RecoveryError::Read {
         path: path.to_owned(),
         source,

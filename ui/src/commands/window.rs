@@ -1,5 +1,6 @@
 //! `pickglass [DESIGN]`: the window, or a still where there is no display.
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use serde_json::json;
@@ -8,7 +9,7 @@ use super::{note_warnings, still};
 use crate::cli::WindowArgs;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
-use crate::window::{self, NoWindow};
+use crate::window::{self, NoWindow, Start};
 use pickglass::still::{StillRequest, Stop};
 
 /// Where the picture goes when no window can open.
@@ -21,14 +22,39 @@ pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
     let opened = Opened::argument(argument, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let name = opened.name().to_owned();
-    // Without a design the start page is shown.
-    let shown = args.design.is_some().then(|| opened.clone());
-    match window::run(shown, args.smoke_frames) {
+    let start = Start {
+        // Without a design the start page is shown.
+        opened: args.design.is_some().then(|| opened.clone()),
+        recover: args.recover.clone(),
+        restarts: args.restarted.clone().unwrap_or_default(),
+        smoke_frames: args.smoke_frames,
+        lose_device_after: args.smoke_lose_device,
+        carry: carried(args),
+    };
+    match window::run(start) {
         Ok(()) if args.json => out::say_json(&json!({ "opened": name })),
         Ok(()) => Ok(()),
-        Err(NoWindow::Unavailable(reason)) => without_window(&opened, &reason, args.json),
+        Err(NoWindow::Unavailable(reason)) => match &args.recover {
+            Some(copy) => Err(anyhow::anyhow!(
+                "no window ({reason}): the work is in {} and is offered at the next start",
+                copy.display()
+            )),
+            None => without_window(&opened, &reason, args.json),
+        },
         Err(NoWindow::Broken(error)) => Err(error),
     }
+}
+
+/// What a program that starts itself again is told once more.
+fn carried(args: &WindowArgs) -> Vec<OsString> {
+    let mut carried = Vec::new();
+    if args.json {
+        carried.push("--json".into());
+    }
+    if let Some(frames) = args.smoke_frames {
+        carried.extend(["--smoke-frames".into(), frames.to_string().into()]);
+    }
+    carried
 }
 
 fn without_window(opened: &Opened, reason: &str, json: bool) -> anyhow::Result<()> {

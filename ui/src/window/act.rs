@@ -42,6 +42,10 @@ impl App {
                     self.draft.regions[usize::from(button == Button::Second)] = region;
                 }
                 Action::Limits(limits) => self.draft.limits = limits,
+                Action::Calibrated(mm_per_point) => {
+                    self.settings.mm_per_point = Some(mm_per_point);
+                    self.write_settings();
+                }
                 Action::Show(pane) => self.layout.bring(pane),
                 Action::Say(grade, text, kept) => self.say(grade, text, kept),
             }

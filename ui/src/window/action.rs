@@ -46,6 +46,8 @@ pub enum Action {
     PaintRegion(u16, Button),
     /// Threads that an end and a pick may pass over before the draft marks the float.
     Limits([u32; 2]),
+    /// The screen was found to have so many millimetres a point.
+    Calibrated(f32),
     /// Bring a pane to the front.
     Show(Pane),
     /// Tell the person what happened and what was kept.

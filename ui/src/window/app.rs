@@ -1,17 +1,23 @@
 //! The window's state and its frame: what is read off the threads, what is shown where,
 //! and then all that was asked for.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use egui::{CentralPanel, Frame, Id, Panel, Rect, ViewportCommand};
-use pickglass::edit::Document;
+use pickglass::edit::{Document, recovery};
 
 use super::action::Action;
 use super::asking::Asking;
-use super::autosave::{Autosave, RecoveryFolder};
+use super::autosave::{Autosave, RecoveryFolder, Rescued};
+use super::cloth::bar::is_scale;
 use super::crossing;
 use super::draft::DraftPane;
 use super::export::Export;
 use super::files::Files;
 use super::layout::Layout;
+use super::lost::{Guard, Restarts};
 use super::menu::{self, Choice, Situation};
 use super::palette::CommandPalette;
 use super::panes::{Pane, Panes};
@@ -20,7 +26,7 @@ use super::session::Session;
 use super::settings::{Settings, SettingsFile};
 use super::start::StartPage;
 use super::status::{self, Cancel, Status};
-use super::toasts::Toasts;
+use super::toasts::{Grade, Toasts};
 use super::tools;
 use super::volume::VolumeExport;
 use crate::opened::Opened;
@@ -59,6 +65,9 @@ pub struct App {
     /// The title the system was last told.
     pub(super) told_title: String,
     frames_left: Option<u32>,
+    /// The device the window is drawn with, and after how many frames it is lost on trial.
+    guard: Option<Guard>,
+    lose_after: Option<u32>,
     pub(super) ctx: egui::Context,
     /// Seconds spent in each frame.
     #[cfg(test)]
@@ -98,10 +107,15 @@ impl App {
             may_close: false,
             told_title: String::new(),
             frames_left: None,
+            guard: None,
+            lose_after: None,
             ctx: ctx.clone(),
             #[cfg(test)]
             spent: Vec::new(),
         };
+        if let Some(scale) = app.settings.mm_per_point.filter(|mm| is_scale(*mm)) {
+            app.preview.mm_per_point = scale;
+        }
         if let Some(wrong) = wrong {
             app.warn(wrong, "Nothing of your designs is lost.");
         }
@@ -115,6 +129,55 @@ impl App {
     pub fn closing_after(mut self, frames: Option<u32>) -> Self {
         self.frames_left = frames;
         self
+    }
+
+    /// Loses the graphics device after this many frames.
+    pub fn losing_after(mut self, frames: Option<u32>) -> Self {
+        self.lose_after = frames;
+        self
+    }
+
+    /// Opens a recovery copy, and says so where the program started itself again.
+    pub fn begin_with(
+        &mut self,
+        ctx: &egui::Context,
+        recover: Option<PathBuf>,
+        restarts: &Restarts,
+    ) {
+        if restarts.happened() {
+            let what = "The graphics device was lost, so the window was opened anew.";
+            self.warn(what, "Your work is as it was.");
+        }
+        match recover.as_deref().map(recovery::describe) {
+            Some(Ok(found)) => self.files.recover(ctx, &found),
+            Some(Err(error)) => self.say(Grade::Error, error.to_string(), ""),
+            None => {}
+        }
+    }
+
+    /// Watches the device the window is drawn with: when it is lost, `lost` is set, what is
+    /// open is written, and `then` is done on another thread.
+    pub fn watch(
+        &mut self,
+        device: &eframe::wgpu::Device,
+        lost: Arc<AtomicBool>,
+        then: Arc<dyn Fn(Rescued) + Send + Sync>,
+    ) {
+        let rescuer = self.autosave.rescuer();
+        self.guard = rescuer.map(|rescuer| Guard::new(device, rescuer, lost, then));
+    }
+
+    /// Asks whether the device is still there, so that whoever watches it hears.
+    fn mind_device(&mut self) {
+        let Some(guard) = &self.guard else { return };
+        if let Some(left) = &mut self.lose_after {
+            if *left == 0 {
+                guard.destroy();
+            }
+            *left = left.saturating_sub(1);
+            self.ctx.request_repaint();
+        }
+        guard.ask();
     }
 
     /// What the menus and the palette need to know.
@@ -170,7 +233,8 @@ impl App {
         let phase = self.preview.phase();
         let document = self.session.as_ref().map(|session| &session.document);
         let crossing = document.zip(self.hover).and_then(|(document, at)| {
-            crossing::describe(document, at, self.draft.show.arrangement)
+            let arrangement = self.draft.show.arrangement;
+            crossing::describe(document, at, arrangement, self.draft.limits)
         });
         let cancel = status::show(
             ui,
@@ -280,6 +344,14 @@ impl eframe::App for App {
         self.spent.push(begun.elapsed().as_secs_f64());
     }
 
+    /// Also done while the window is hidden: work is copied even then.
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.mind_device();
+        if let Some(session) = &self.session {
+            self.autosave.keep(ctx, session);
+        }
+    }
+
     fn on_exit(&mut self) {
         let ctx = self.ctx.clone();
         self.keep_settings(&ctx);
@@ -300,9 +372,6 @@ impl App {
         let mut actions = Vec::new();
         self.preview.poll(&ctx, &mut actions);
         self.pick_up(&ctx);
-        if let Some(session) = &self.session {
-            self.autosave.keep(&ctx, session);
-        }
         // What is asked is answered before anything else is done.
         let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
         if !asked && let Some(command) = menu::pressed(&ctx) {
@@ -335,6 +404,7 @@ impl App {
             self.show_shortcuts = menu::shortcuts_ui(&ctx);
         }
         self.act(&ctx, actions);
+        self.autosave.note(self.session.as_ref());
         self.count_frame(&ctx);
     }
 

@@ -2,19 +2,21 @@
 //! earlier run left behind.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
 use pickglass::design::Design;
-use pickglass::edit::recovery::{self, Found, Recovery};
+use pickglass::edit::recovery::{self, Found, Recovery, RecoveryError};
 
 use super::session::Session;
 use super::task::{Outcome, Task};
 
-/// Changed work is on the disk after at most about this long.
+/// Changed work is on the disk after at most about this long; 10 s are promised.
 const EVERY: Duration = Duration::from_secs(5);
+// The other half is for the writing.
+const _: () = assert!(EVERY.as_secs() <= 5);
 
 /// Where recovery copies are; `None` = none are kept.
 #[derive(Debug, Clone, Default)]
@@ -37,13 +39,50 @@ impl RecoveryFolder {
 /// What the thread is asked for.
 enum Order {
     Save {
-        design: Arc<Design>,
-        original: Option<PathBuf>,
+        open: Open,
         /// An earlier run's copy of the same work, taken away once this one is written.
         instead_of: Option<PathBuf>,
     },
     /// Nothing is unsaved any more.
     Clear,
+    /// The window is lost: bring what is open to safety now, then do this.
+    Rescue(Arc<dyn Fn(Rescued) + Send + Sync>),
+    /// The window closes.
+    End,
+}
+
+/// What is open, as the window left it last.
+#[derive(Clone)]
+struct Open {
+    design: Arc<Design>,
+    original: Option<PathBuf>,
+    modified: bool,
+}
+
+/// What was brought to safety when the window was lost.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Rescued {
+    /// Nothing was open.
+    Nothing,
+    /// All of it is in this file of the person's own.
+    File(PathBuf),
+    /// A recovery copy.
+    Copy(PathBuf),
+    /// It could not be written: one line that says why.
+    Failed(String),
+}
+
+/// Brings what is open to safety, from whatever thread finds the window lost.
+#[derive(Clone)]
+pub struct Rescuer(Sender<Order>);
+
+impl Rescuer {
+    /// Has what is open written and then `then` done, on the thread of the copies: the
+    /// window's own thread may hang or break meanwhile.
+    pub fn rescue(&self, then: Arc<dyn Fn(Rescued) + Send + Sync>) {
+        // Without that thread the window is closed, and nothing is open.
+        let _ = self.0.send(Order::Rescue(then));
+    }
 }
 
 /// The copies of this run, and those of earlier ones.
@@ -52,6 +91,10 @@ pub struct Autosave {
     orders: Option<Sender<Order>>,
     thread: Option<JoinHandle<()>>,
     failures: Option<Receiver<String>>,
+    /// What a rescue writes.
+    open: Arc<Mutex<Option<Open>>>,
+    /// How long changes may wait.
+    every: Duration,
     /// The revision that was sent last, and when.
     sent: Option<(u64, Instant)>,
     listing: Option<Task<(Vec<Found>, Vec<String>)>>,
@@ -76,6 +119,8 @@ impl Autosave {
             orders: None,
             thread: None,
             failures: None,
+            open: Arc::default(),
+            every: EVERY,
             sent: None,
             listing,
             found: Vec::new(),
@@ -92,6 +137,9 @@ impl Autosave {
             && let Outcome::Ready((found, damaged)) = listing.poll()
         {
             self.found = found;
+            // What this run was started on is open, not left.
+            self.found
+                .retain(|found| Some(&found.path) != self.reopened.as_ref());
             told.extend(damaged);
             self.listing = None;
         }
@@ -102,9 +150,6 @@ impl Autosave {
     pub fn keep(&mut self, ctx: &egui::Context, session: &Session) {
         let document = &session.document;
         let revision = document.revision();
-        if document.in_gesture() {
-            return;
-        }
         if !document.is_modified() {
             if self.sent.take().is_some() {
                 self.send(Order::Clear);
@@ -113,7 +158,7 @@ impl Autosave {
         }
         let due = match self.sent {
             Some((sent, _)) if sent == revision => return,
-            Some((_, at)) => at + EVERY,
+            Some((_, at)) => at + self.every,
             None => Instant::now(),
         };
         let now = Instant::now();
@@ -124,10 +169,26 @@ impl Autosave {
         self.sent = Some((revision, now));
         let instead_of = self.reopened.take();
         self.send(Order::Save {
-            design: session.design(),
-            original: session.path.clone(),
+            open: Open::of(session),
             instead_of,
         });
+    }
+
+    /// Takes note of what is open, for a rescue: cheap, and done at the end of each frame.
+    pub fn note(&self, session: Option<&Session>) {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        *open = session.map(Open::of);
+    }
+
+    fn has_unsaved(&self) -> bool {
+        let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.as_ref().is_some_and(|open| open.modified)
+    }
+
+    /// Who brings what is open to safety when the window is lost.
+    pub fn rescuer(&mut self) -> Option<Rescuer> {
+        self.start();
+        self.orders.clone().map(Rescuer)
     }
 
     /// The document is left, saved or not: its copy is not needed.
@@ -153,22 +214,26 @@ impl Autosave {
     }
 
     fn send(&mut self, order: Order) {
-        if self.orders.is_none() {
-            self.start();
-        }
+        self.start();
         if let Some(orders) = &self.orders {
             let _ = orders.send(order);
         }
     }
 
     fn start(&mut self) {
-        let Some(folder) = self.folder.0.clone() else {
+        if self.orders.is_some() {
             return;
-        };
+        }
         let (orders, wanted) = channel::<Order>();
         let (tell, failures) = channel();
+        let copies = Copies {
+            folder: self.folder.0.clone(),
+            open: Arc::clone(&self.open),
+            copy: None,
+            needed: false,
+        };
         let thread = std::thread::Builder::new().name("recovery".to_owned());
-        match thread.spawn(move || write_copies(&folder, &wanted, &tell)) {
+        match thread.spawn(move || copies.write(&wanted, &tell)) {
             Ok(thread) => {
                 self.orders = Some(orders);
                 self.failures = Some(failures);
@@ -180,55 +245,105 @@ impl Autosave {
 
     /// Waits until what was asked for is on the disk; the window is closing.
     pub fn finish(&mut self) {
-        self.orders = None;
+        if let Some(orders) = self.orders.take() {
+            let _ = orders.send(Order::End);
+        }
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
 }
 
+impl Open {
+    fn of(session: &Session) -> Self {
+        Self {
+            design: session.design(),
+            original: session.path.clone(),
+            modified: session.document.is_modified(),
+        }
+    }
+}
+
 impl Drop for Autosave {
     fn drop(&mut self) {
+        // What breaks the window costs nothing of the work.
+        if std::thread::panicking() && self.has_unsaved() {
+            self.send(Order::Rescue(Arc::new(|_| {})));
+        }
         self.finish();
     }
 }
 
-/// Writes what is ordered until the window closes. A copy that is not needed any more is
-/// taken away; one of unsaved work stays behind.
-fn write_copies(folder: &Path, wanted: &Receiver<Order>, tell: &Sender<String>) {
-    let mut copy = match Recovery::begin(folder) {
-        Ok(copy) => copy,
-        Err(error) => {
-            let _ = tell.send(error.to_string());
-            return;
-        }
-    };
-    let mut needed = false;
-    while let Ok(order) = wanted.recv() {
-        let done = match order {
-            Order::Save {
-                design,
-                original,
-                instead_of,
-            } => {
-                needed = true;
-                let saved = copy.save(&design, original.as_deref());
-                if let (Ok(_), Some(earlier)) = (&saved, instead_of) {
-                    discard(&earlier);
+/// The thread of the copies.
+struct Copies {
+    folder: Option<PathBuf>,
+    open: Arc<Mutex<Option<Open>>>,
+    copy: Option<Recovery>,
+    /// Something unsaved is in the copy.
+    needed: bool,
+}
+
+impl Copies {
+    /// Writes what is ordered until the window closes. A copy that is not needed any more
+    /// is taken away; one of unsaved work stays behind.
+    fn write(mut self, wanted: &Receiver<Order>, tell: &Sender<String>) {
+        while let Ok(order) = wanted.recv() {
+            let done = match order {
+                Order::Save { open, instead_of } => self.save(&open, instead_of.as_deref()),
+                Order::Clear => {
+                    self.needed = false;
+                    self.copy.as_mut().map_or(Ok(()), Recovery::clear)
                 }
-                saved.map(drop)
+                Order::Rescue(then) => {
+                    let rescued = self.rescue();
+                    // The lock on the copy ends here: who opens it next may be at it now.
+                    self.copy = None;
+                    then(rescued);
+                    Ok(())
+                }
+                Order::End => break,
+            };
+            if let Err(error) = done {
+                let _ = tell.send(error.to_string());
             }
-            Order::Clear => {
-                needed = false;
-                copy.clear()
-            }
-        };
-        if let Err(error) = done {
-            let _ = tell.send(error.to_string());
+        }
+        if !self.needed
+            && let Some(copy) = self.copy
+            && let Err(error) = copy.close()
+        {
+            log::warn!("{error}");
         }
     }
-    if !needed && let Err(error) = copy.close() {
-        log::warn!("{error}");
+
+    fn save(&mut self, open: &Open, instead_of: Option<&Path>) -> Result<(), RecoveryError> {
+        let Some(folder) = &self.folder else {
+            return Ok(());
+        };
+        let copy = match &mut self.copy {
+            Some(copy) => copy,
+            None => self.copy.insert(Recovery::begin(folder)?),
+        };
+        copy.save(&open.design, open.original.as_deref())?;
+        self.needed = true;
+        if let Some(earlier) = instead_of {
+            discard(earlier);
+        }
+        Ok(())
+    }
+
+    fn rescue(&mut self) -> Rescued {
+        let open = (self.open.lock().unwrap_or_else(PoisonError::into_inner)).clone();
+        let Some(open) = open else {
+            return Rescued::Nothing;
+        };
+        match &open.original {
+            Some(file) if !open.modified => Rescued::File(file.clone()),
+            _ => match (self.save(&open, None), &self.copy) {
+                (Ok(()), Some(copy)) => Rescued::Copy(copy.path().to_owned()),
+                (Ok(()), None) => Rescued::Failed("there is no folder for copies".to_owned()),
+                (Err(error), _) => Rescued::Failed(error.to_string()),
+            },
+        }
     }
 }
 
@@ -246,5 +361,13 @@ pub fn ago(time: SystemTime) -> String {
         60..3600 => format!("{} min ago", seconds / 60),
         3600..86_400 => format!("{} h ago", seconds / 3600),
         _ => format!("{} days ago", seconds / 86_400),
+    }
+}
+
+#[cfg(test)]
+impl Autosave {
+    /// Changes are copied at once.
+    pub fn without_waiting(&mut self) {
+        self.every = Duration::ZERO;
     }
 }

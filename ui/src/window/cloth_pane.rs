@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, CursorIcon, Key, PointerButton, Rect, Response, Sense, Stroke,
-    TextureHandle, TextureOptions, vec2,
+    Color32, ColorImage, CursorIcon, PointerButton, Rect, Response, Sense, Stroke, TextureHandle,
+    TextureOptions, vec2,
 };
 
+use super::focus;
 use super::view::{ClothView, scale_bar};
 use super::worker::Picture;
 use crate::tokens::{self, Palette};
@@ -15,8 +16,8 @@ use pickglass::still::StillRequest;
 
 /// One notch of a wheel zooms by about this much.
 const ZOOM_A_POINT: f32 = 0.004;
-/// An arrow key moves the cloth by this share of the pane.
-const KEY_STEP: f32 = 0.1;
+/// A key moves the cloth by this share of the pane.
+pub const KEY_STEP: f32 = 0.1;
 
 /// The picture on the screen.
 pub struct Shown {
@@ -124,8 +125,7 @@ impl ClothPane {
             );
         }
         if response.has_focus() {
-            let stroke = Stroke::new(2.0, tokens::ACCENT);
-            painter.rect_stroke(pane.shrink(1.0), 0.0, stroke, egui::StrokeKind::Inside);
+            focus::ring(&painter, pane, &Palette::current(ui));
         }
         response.on_hover_cursor(CursorIcon::Grab)
     }
@@ -150,25 +150,9 @@ fn move_view(ui: &egui::Ui, response: &Response, pane: Rect, view: &mut ClothVie
             view.zoom(pane, anchor, factor);
         }
     }
-    if response.has_focus() {
-        ui.memory_mut(|memory| {
-            let all = egui::EventFilter {
-                horizontal_arrows: true,
-                vertical_arrows: true,
-                ..Default::default()
-            };
-            memory.set_focus_lock_filter(response.id, all);
-        });
-        for (key, direction) in [
-            (Key::ArrowLeft, vec2(1.0, 0.0)),
-            (Key::ArrowRight, vec2(-1.0, 0.0)),
-            (Key::ArrowUp, vec2(0.0, 1.0)),
-            (Key::ArrowDown, vec2(0.0, -1.0)),
-        ] {
-            if ui.input(|input| input.key_pressed(key)) {
-                view.pan(direction * pane.size() * KEY_STEP);
-            }
-        }
+    let [right, up] = focus::arrows(ui, response).map(|by| by as f32);
+    if right != 0.0 || up != 0.0 {
+        view.pan(vec2(-right, up) * pane.size() * KEY_STEP);
     }
 }
 

@@ -10,11 +10,13 @@ use crate::command_table::DraftLayout;
 const LONGEST: u32 = 999;
 
 /// The crossing (end, pick) of the endless cloth as weavers would say it, counted from 1 as
-/// the layout counts; `None` where there is no cloth.
+/// the layout counts; `None` where there is no cloth. `limits` = threads that an end and a pick
+/// may pass over.
 pub fn describe(
     document: &Document,
     (end, pick): (i64, i64),
     arrangement: DraftLayout,
+    limits: [u32; 2],
 ) -> Option<String> {
     let (design, drawdown) = (document.design(), document.drawdown());
     let lattice = design.lattice();
@@ -33,6 +35,7 @@ pub fn describe(
     let over = match length {
         LONGEST => "never bound".to_owned(),
         1 => "over 1".to_owned(),
+        length if length > limits[usize::from(!warp)] => format!("float over {length}, too long"),
         length => format!("float over {length}"),
     };
     let ends = i64::from(drawdown.ends());
@@ -54,7 +57,7 @@ mod tests {
         let opened = Opened::preset("oxford").expect("a preset");
         let document = Document::new(Design::clone(&opened.design));
         let ends = i64::from(opened.design.ends());
-        let told = |at, arrangement| describe(&document, at, arrangement).expect("cloth");
+        let told = |at, arrangement| describe(&document, at, arrangement, [7; 2]).expect("cloth");
         let plain = told((0, 0), DraftLayout::Scandinavian);
         assert!(
             plain.starts_with("end 1 · pick 1 · ") && plain.contains(" over "),
@@ -68,5 +71,25 @@ mod tests {
             next.starts_with(&format!("end {ends} · pick 1 · ")),
             "{next}"
         );
+    }
+
+    #[test]
+    fn a_float_beyond_its_limit_is_called_too_long() {
+        let opened = Opened::preset("silk-satin").expect("a preset");
+        let document = Document::new(Design::clone(&opened.design));
+        let (ends, picks) = (opened.design.ends(), opened.design.picks());
+        let long = |limits| {
+            let cells = (0..i64::from(ends) * i64::from(picks)).filter(|at| {
+                let at = (at % i64::from(ends), at / i64::from(ends));
+                let told = describe(&document, at, DraftLayout::Us, limits).expect("cloth");
+                told.ends_with("too long")
+            });
+            cells.count()
+        };
+        assert_eq!(long([99, 99]), 0);
+        // Each way has a limit of its own, and both together find what either finds.
+        let (warp, weft) = (long([2, 99]), long([99, 2]));
+        assert!(warp + weft > 0 && warp != weft, "{warp} {weft}");
+        assert_eq!(long([2, 2]), warp + weft);
     }
 }

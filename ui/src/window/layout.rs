@@ -7,6 +7,7 @@ use egui::{Id, Ui, WidgetText};
 use egui_tiles::{Behavior, Container, Linear, LinearDir, Tile, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
 
+use super::focus;
 use super::panes::Pane;
 use crate::tokens;
 
@@ -102,11 +103,24 @@ fn whole(tree: &Tree<Pane>) -> bool {
         }
         match tree.tiles.get(id) {
             Some(Tile::Pane(pane)) => found.push(*pane),
-            Some(Tile::Container(container)) => next.extend(container.children_vec()),
+            Some(Tile::Container(container)) if sound(container) => {
+                next.extend(container.children_vec());
+            }
+            Some(Tile::Container(_)) => return false,
             None => return false,
         }
     }
     found.len() == Pane::ALL.len() && Pane::ALL.iter().all(|pane| found.contains(pane))
+}
+
+/// Whether every part of a container has some room.
+fn sound(container: &Container) -> bool {
+    let some = |share: &f32| (1e-6..=1e6).contains(share);
+    match container {
+        Container::Linear(linear) => linear.shares.iter().all(|(_, share)| some(share)),
+        Container::Grid(grid) => grid.col_shares.iter().chain(&grid.row_shares).all(some),
+        Container::Tabs(_) => true,
+    }
 }
 
 struct Shown<'s> {
@@ -121,6 +135,32 @@ impl Behavior<Pane> for Shown<'_> {
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
         pane.title().into()
+    }
+
+    fn on_tab_button(
+        &mut self,
+        _tiles: &mut Tiles<Pane>,
+        _tile: TileId,
+        tab: egui::Response,
+    ) -> egui::Response {
+        if tab.has_focus() {
+            let painter = tab.ctx.layer_painter(tab.layer_id);
+            focus::ring(&painter, tab.rect, &tokens::Palette::of(tab.ctx.theme()));
+        }
+        tab
+    }
+
+    fn tab_outline_stroke(
+        &self,
+        visuals: &egui::Visuals,
+        _tiles: &Tiles<Pane>,
+        _tile: TileId,
+        state: &egui_tiles::TabState,
+    ) -> egui::Stroke {
+        match state.active {
+            true => visuals.widgets.noninteractive.bg_stroke,
+            false => egui::Stroke::NONE,
+        }
     }
 
     fn gap_width(&self, _style: &egui::Style) -> f32 {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use egui::containers::menu::MenuConfig;
 use egui::{Button, Grid, Id, KeyboardShortcut, MenuBar, Modal, Modifiers, RichText};
 use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
@@ -100,7 +101,9 @@ impl Situation<'_> {
 /// Shows the menu bar with the design's name at its end.
 pub fn show(ui: &mut egui::Ui, situation: &Situation<'_>, title: &str) -> Option<Choice> {
     let mut choice = None;
-    MenuBar::new().ui(ui, |ui| {
+    let config = MenuConfig::new().style(tokens::menu);
+    let bar = MenuBar::new().style(tokens::menu).config(config);
+    bar.ui(ui, |ui| {
         for menu in Menu::ALL {
             ui.menu_button(menu.title(), |ui| {
                 choice = menu_ui(ui, menu, situation).or(choice.take());
@@ -168,9 +171,11 @@ fn recent_ui(ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
         }
         for path in recent {
             let name = path.file_name().unwrap_or(path.as_os_str());
-            let button = Button::new(name.to_string_lossy());
+            let there = path.exists();
+            let gone = if there { "" } else { " (not there any more)" };
+            let button = Button::new(format!("{}{gone}", name.to_string_lossy()));
             // A file that is gone stays listed, greyed, until newer ones push it out.
-            let shown = ui.add_enabled(path.exists(), button);
+            let shown = ui.add_enabled(there, button);
             if shown.on_hover_text(path.display().to_string()).clicked() {
                 choice = Some(Choice::Recent(path.clone()));
                 ui.close();
@@ -347,11 +352,18 @@ fn gestures_ui(ui: &mut egui::Ui) {
                 ("Space or middle", "Move what is seen"),
                 ("Wheel", "Zoom at the pointer"),
                 ("Hold a tool's key", "That tool until the key is let go"),
-                ("Arrow keys", "Draft: move the cell cursor. Cloth: move it"),
+                (
+                    "Arrow keys",
+                    "Draft: move the cell cursor, with Ctrl by 8. Cloth: move it",
+                ),
+                ("Shift+arrows", "Draft: make a range from the cursor on"),
                 (
                     "Space, Enter",
-                    "Draft: exchange warp and weft at the cursor",
+                    "Draft: exchange warp and weft at the cursor, or paint the range; with \
+                     Shift the other paint",
                 ),
+                ("Menu, Shift+F10", "Draft: its menu"),
+                ("Tab", "From one field or button to the next"),
                 ("Esc", "Give up the gesture, or forget the selection"),
             ] {
                 ui.label(RichText::new(gesture).monospace());

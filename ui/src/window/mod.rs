@@ -18,11 +18,13 @@ mod crossing;
 mod draft;
 mod export;
 mod files;
+mod focus;
 mod forms;
 mod icons;
 mod laid;
 mod layout;
 mod leaving;
+mod lost;
 mod menu;
 mod obey;
 mod palette;
@@ -42,12 +44,17 @@ mod volume;
 mod weave;
 mod worker;
 
+use std::any::Any;
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::opened::Opened;
 use app::AppOptions;
 use autosave::RecoveryFolder;
+pub use lost::Restarts;
 use settings::SettingsFile;
 
 /// Why there is no window.
@@ -58,8 +65,24 @@ pub enum NoWindow {
     Broken(anyhow::Error),
 }
 
+/// What the window is opened with.
+pub struct Start {
+    /// `None` = the start page.
+    pub opened: Option<Opened>,
+    /// A recovery copy to open instead.
+    pub recover: Option<PathBuf>,
+    /// How often the program started itself again.
+    pub restarts: Restarts,
+    /// The window closes itself after this many frames.
+    pub smoke_frames: Option<u32>,
+    /// The graphics device is lost after this many frames.
+    pub lose_device_after: Option<u32>,
+    /// Arguments that are handed on when the program starts itself again.
+    pub carry: Vec<OsString>,
+}
+
 /// Opens the window and returns when it is closed.
-pub fn run(opened: Option<Opened>, smoke_frames: Option<u32>) -> Result<(), NoWindow> {
+pub fn run(start: Start) -> Result<(), NoWindow> {
     if !display_named() {
         return Err(NoWindow::Unavailable(
             "no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned(),
@@ -75,28 +98,103 @@ pub fn run(opened: Option<Opened>, smoke_frames: Option<u32>) -> Result<(), NoWi
         ..Default::default()
     };
     let shown = Arc::new(AtomicBool::new(false));
-    let created = Arc::clone(&shown);
-    let outcome = eframe::run_native(
-        "pickglass",
-        options,
-        Box::new(move |cc| {
-            let options = AppOptions {
-                settings: SettingsFile::of_user(),
-                recovery: RecoveryFolder::of_user(),
-                ..AppOptions::default()
-            };
-            let app = app::App::new(&cc.egui_ctx, opened, options)?;
-            created.store(true, Ordering::Relaxed);
-            Ok(Box::new(app.closing_after(smoke_frames)))
-        }),
-    );
-    match outcome {
-        Ok(()) => Ok(()),
-        Err(error) if shown.load(Ordering::Relaxed) => Err(NoWindow::Broken(anyhow::anyhow!(
+    let lost = Arc::new(AtomicBool::new(false));
+    hush(&shown, &lost);
+    let (created, losing) = (Arc::clone(&shown), Arc::clone(&lost));
+    let open = move || {
+        eframe::run_native(
+            "pickglass",
+            options,
+            Box::new(move |cc| {
+                let app = watched_app(cc, start, losing)?;
+                created.store(true, Ordering::Relaxed);
+                Ok(Box::new(app))
+            }),
+        )
+    };
+    let broke = |why: &str| NoWindow::Broken(anyhow::anyhow!("{why}"));
+    match catch_unwind(AssertUnwindSafe(open)) {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(error)) if shown.load(Ordering::Relaxed) => Err(broke(&format!(
             "the window broke ({error}): start again, or use `pickglass still`"
         ))),
-        Err(error) => Err(NoWindow::Unavailable(few_words(&error.to_string()))),
+        Ok(Err(error)) => Err(NoWindow::Unavailable(unavailable(&error))),
+        // The thread that starts the program again ends this one; it does not come to this.
+        Err(_) if lost.load(Ordering::SeqCst) => Err(broke(
+            "the graphics device was lost: start again; unsaved work is offered",
+        )),
+        Err(panic) if shown.load(Ordering::Relaxed) => resume_unwind(panic),
+        Err(panic) => Err(NoWindow::Unavailable(no_window_system(&*panic))),
     }
+}
+
+/// The window's state, with the device watched.
+fn watched_app(
+    cc: &eframe::CreationContext<'_>,
+    start: Start,
+    lost: Arc<AtomicBool>,
+) -> std::io::Result<app::App> {
+    let options = AppOptions {
+        settings: SettingsFile::of_user(),
+        recovery: RecoveryFolder::of_user(),
+        ..AppOptions::default()
+    };
+    let mut app = app::App::new(&cc.egui_ctx, start.opened, options)?;
+    app.begin_with(&cc.egui_ctx, start.recover, &start.restarts);
+    if let Some(state) = &cc.wgpu_render_state {
+        let (restarts, carry) = (start.restarts, start.carry);
+        let then = move |rescued| {
+            let (code, line) = lost::follow(&rescued, &restarts, &carry);
+            crate::out::note(&format!("pickglass: {line}"));
+            std::process::exit(code);
+        };
+        app.watch(&state.device, lost, Arc::new(then));
+    }
+    Ok(app
+        .closing_after(start.smoke_frames)
+        .losing_after(start.lose_device_after))
+}
+
+/// Says nothing of what breaks because the device is lost, or because no window can open:
+/// both are told in one line by who finds out.
+fn hush(shown: &Arc<AtomicBool>, lost: &Arc<AtomicBool>) {
+    let (shown, lost) = (Arc::clone(shown), Arc::clone(lost));
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let opening =
+            !shown.load(Ordering::Relaxed) && std::thread::current().name() == Some("main");
+        if !opening && !lost.load(Ordering::SeqCst) {
+            usual(info);
+        }
+    }));
+}
+
+/// Debian's packages that let wgpu find an adapter, at least one that draws in software.
+const ADAPTER_PACKAGES: &str = "mesa-vulkan-drivers libvulkan1";
+/// Debian's packages that winit loads while it opens a window.
+const WINDOW_PACKAGES: &str =
+    "libxkbcommon-x11-0 libxkbcommon0 libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2";
+
+/// Why no window opened, with what to do where that is known.
+fn unavailable(error: &eframe::Error) -> String {
+    let why = few_words(&error.to_string());
+    match error {
+        eframe::Error::Wgpu(_) => format!(
+            "no usable graphics adapter, on Debian or Ubuntu: sudo apt-get install \
+             {ADAPTER_PACKAGES}; {why}"
+        ),
+        _ => why,
+    }
+}
+
+/// As [`unavailable`], for a library of the system that is not there: winit gives up then.
+fn no_window_system(panic: &(dyn Any + Send)) -> String {
+    let said = (panic.downcast_ref::<String>().map(String::as_str))
+        .or_else(|| panic.downcast_ref::<&str>().copied());
+    let why = few_words(said.unwrap_or("for a reason it did not give"));
+    format!(
+        "the window system cannot be used, on Debian or Ubuntu: sudo apt-get install {WINDOW_PACKAGES}; {why}"
+    )
 }
 
 /// The beginning of an error, without the places in code that some append.
@@ -123,8 +221,8 @@ fn display_named() -> bool {
 }
 
 #[cfg(test)]
-mod few_words_tests {
-    use super::few_words;
+mod opening_tests {
+    use super::*;
 
     #[test]
     fn a_reason_is_short_and_names_no_place_in_code() {
@@ -132,5 +230,27 @@ mod few_words_tests {
         assert_eq!(few_words(long), "winit EventLoopError: os error at");
         assert_eq!(few_words("no \n adapter"), "no adapter");
         assert_eq!(few_words(&"é".repeat(300)).chars().count(), 101);
+    }
+
+    #[test]
+    fn without_an_adapter_one_line_names_the_packages() {
+        use eframe::egui_wgpu::WgpuError;
+        for error in [
+            WgpuError::NoSurfaceFormatsAvailable,
+            WgpuError::CustomNativeAdapterSelectionError("none\nat all".to_owned()),
+        ] {
+            let line = unavailable(&eframe::Error::Wgpu(error));
+            assert!(line.contains("sudo apt-get install mesa-vulkan-drivers libvulkan1"));
+            assert!(!line.contains('\n'), "{line}");
+        }
+        // Another error is not blamed on the adapter.
+        let other = unavailable(&eframe::Error::AppCreation("no thread".into()));
+        assert!(
+            other.contains("no thread") && !other.contains("mesa"),
+            "{other}"
+        );
+        let lacking: Box<dyn Any + Send> = Box::new("Library libxkbcommon-x11.so".to_owned());
+        let line = no_window_system(&*lacking);
+        assert!(line.contains("libxkbcommon-x11-0") && line.ends_with("libxkbcommon-x11.so"));
     }
 }

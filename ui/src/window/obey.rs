@@ -77,6 +77,7 @@ impl App {
                 self.draft.obey(command);
             }
             Command::Use(tool) => self.draft.take_tool(ctx, tool),
+            Command::Glass => self.preview.pin_glass(ctx),
             Command::SwapColours => {
                 self.draft.yarns.swap(0, 1);
                 self.draft.regions.swap(0, 1);

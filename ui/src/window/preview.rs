@@ -1,7 +1,7 @@
 //! The cloth pane: what is looked at and how, what the worker is asked for, and what it
 //! says while it works.
 
-use egui::{Frame, Id, PointerButton, Rect, RichText, pos2, vec2};
+use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::render::View;
@@ -12,12 +12,12 @@ use super::cloth::bar::{self, Says};
 use super::cloth::compare::Compare;
 use super::cloth::glass::{self, Glass};
 use super::cloth::lamp;
-use super::cloth_pane::ClothPane;
+use super::cloth_pane::{ClothPane, KEY_STEP};
 use super::laid::Laid;
 use super::toasts::Grade;
 use super::view::ClothView;
 use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest};
-use crate::command_table::Command;
+use crate::command_table::{Command, Toward};
 use crate::tokens::{self, Palette};
 
 /// One step of the zoom keys.
@@ -25,7 +25,10 @@ const ZOOM_STEP: f32 = 1.25;
 /// Degrees that the eye turns for a point of dragging, and how low it may go.
 const TURN_A_POINT: f32 = 0.4;
 const LOWEST_EYE: f32 = 12.0;
-/// Millimetres of cloth a point at actual size, on a screen of 96 points an inch.
+/// Degrees that a key turns the eye.
+const TURN_STEP: f32 = 5.0;
+/// Millimetres of cloth a point at actual size, on a screen of 96 points an inch: where
+/// nobody has held a card against it.
 const ACTUAL_SIZE: f32 = 25.4 / 96.0;
 /// A preview has at most this many pixels; beyond, it is drawn smaller and stretched.
 const MOST_PIXELS: f32 = 4.0e6;
@@ -78,6 +81,8 @@ pub struct Preview {
     /// Whether the pointer or the keyboard is on the cloth.
     in_use: bool,
     widget: Option<Id>,
+    /// The pane when it was shown last, points.
+    pane_size: Vec2,
 }
 
 impl Preview {
@@ -106,6 +111,7 @@ impl Preview {
             reported_failure: None,
             in_use: false,
             widget: None,
+            pane_size: Vec2::ZERO,
         })
     }
 
@@ -195,6 +201,13 @@ impl Preview {
             Command::ZoomOut => self.zoom(1.0 / ZOOM_STEP),
             Command::Pause if self.paused => self.resume(),
             Command::Pause => self.pause(),
+            Command::TurnOver => self.turn_over(),
+            Command::Straighten => self.straighten(),
+            Command::Orbit(toward) => self.turn_by(step(toward) * TURN_STEP),
+            Command::Pan(toward) => {
+                let by = step(toward) * vec2(-1.0, 1.0) * self.pane_size * KEY_STEP;
+                self.rescale(|view| view.pan(by));
+            }
             _ => return false,
         }
         true
@@ -227,6 +240,7 @@ impl Preview {
     /// Shows the pane.
     pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
         let pane = ui.available_rect_before_wrap();
+        self.pane_size = pane.size();
         let laid = Laid::of(document, self.laid.take());
         let mut view = match self.cloth_view {
             Some(view) => view,
@@ -260,6 +274,7 @@ impl Preview {
         } else {
             self.over_ui(ui, pane, view);
         }
+        self.calibrate_ui(ui, actions);
         // Only the straight views show where a crossing lies.
         if let Some(at) = response.hover_pos().filter(|_| straight) {
             let crossing = laid.crossing_at(view.to_cloth(pane, at));
@@ -273,12 +288,39 @@ impl Preview {
         if !response.dragged_by(PointerButton::Secondary) {
             return;
         }
-        let delta = response.drag_delta() * TURN_A_POINT;
+        // The cloth follows the pointer, so the eye goes against it.
+        self.turn_by(-response.drag_delta() * TURN_A_POINT);
+    }
+
+    /// Turns the eye by degrees to the right and upwards.
+    fn turn_by(&mut self, by: Vec2) {
         let [azimuth, elevation] = self.eye.unwrap_or([-90.0, 90.0]);
         self.eye = Some([
-            (azimuth - delta.x + 180.0).rem_euclid(360.0) - 180.0,
-            (elevation - delta.y).clamp(LOWEST_EYE, 90.0),
+            (azimuth + by.x + 180.0).rem_euclid(360.0) - 180.0,
+            (elevation + by.y).clamp(LOWEST_EYE, 90.0),
         ]);
+    }
+
+    fn turn_over(&mut self) {
+        let back = self.view.turns_over();
+        self.view = if back { View::Face } else { View::Back };
+        if let Some(view) = &mut self.cloth_view {
+            view.mirrored = !back;
+        }
+    }
+
+    fn straighten(&mut self) {
+        self.eye = None;
+        if !self.view.turns_over() {
+            self.view = View::Face;
+        }
+    }
+
+    /// Holds the pick glass without a key, or lets go of it; the key itself only holds it.
+    pub fn pin_glass(&mut self, ctx: &egui::Context) {
+        if !ctx.input(|input| input.key_down(glass::KEY)) {
+            self.glass.pin();
+        }
     }
 
     /// What lies over the picture.
@@ -297,19 +339,8 @@ impl Preview {
             near: self.in_use,
         };
         match bar::show(ui, pane, &says) {
-            Some(bar::Wish::TurnOver) => {
-                let back = self.view.turns_over();
-                self.view = if back { View::Face } else { View::Back };
-                if let Some(view) = &mut self.cloth_view {
-                    view.mirrored = !back;
-                }
-            }
-            Some(bar::Wish::Straighten) => {
-                self.eye = None;
-                if !self.view.turns_over() {
-                    self.view = View::Face;
-                }
-            }
+            Some(bar::Wish::TurnOver) => self.turn_over(),
+            Some(bar::Wish::Straighten) => self.straighten(),
             Some(bar::Wish::Keep) => {
                 self.compare = (self.pane.shown.as_ref())
                     .map(|shown| Compare::keep(ui.ctx(), shown.still.clone(), &shown.image));
@@ -318,10 +349,17 @@ impl Preview {
             Some(bar::Wish::Calibrate) => self.calibrating = true,
             None => {}
         }
+        self.glass.show(ui, pane, view);
+    }
+
+    /// The window in which the screen's scale is set; what was set is kept.
+    fn calibrate_ui(&mut self, ui: &egui::Ui, actions: &mut Vec<Action>) {
         if self.calibrating {
             self.calibrating = bar::calibrate(ui.ctx(), &mut self.mm_per_point);
+            if !self.calibrating {
+                actions.push(Action::Calibrated(self.mm_per_point));
+            }
         }
-        self.glass.show(ui, pane, view);
     }
 
     fn initial_view(&self, pane: Rect, laid: &Laid) -> ClothView {
@@ -417,6 +455,16 @@ impl Preview {
                 ui.label("Drawing the cloth");
             }
         });
+    }
+}
+
+/// One step to the right and upwards.
+fn step(toward: Toward) -> Vec2 {
+    match toward {
+        Toward::Left => vec2(-1.0, 0.0),
+        Toward::Right => vec2(1.0, 0.0),
+        Toward::Up => vec2(0.0, 1.0),
+        Toward::Down => vec2(0.0, -1.0),
     }
 }
 

@@ -30,6 +30,8 @@ pub struct Settings {
     pub ghosts: bool,
     pub long_floats: bool,
     pub navigator: bool,
+    /// Millimetres a point of the screen, where a card was held against it.
+    pub mm_per_point: Option<f32>,
 }
 
 impl Default for Settings {
@@ -43,6 +45,7 @@ impl Default for Settings {
             ghosts: true,
             long_floats: false,
             navigator: false,
+            mm_per_point: None,
         }
     }
 }
@@ -103,7 +106,8 @@ impl SettingsFile {
             Ok(()) => format!("it was kept as {}", kept.display()),
             Err(_) => "it will be written over".to_owned(),
         };
-        let file = path.display();
+        let problem: Vec<&str> = problem.split_whitespace().collect();
+        let (file, problem) = (path.display(), problem.join(" "));
         format!("{file}: the settings are damaged ({problem}); the usual ones are used, {kept}")
     }
 

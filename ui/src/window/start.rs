@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{
-    Color32, Rect, RichText, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, vec2,
-};
+use egui::{Color32, Rect, RichText, Sense, TextureHandle, TextureOptions, vec2};
 use pickglass::design::{Colouring, Design, SwatchWindow, swatch};
 use pickglass::edit::recovery::Found;
 use pickglass::formats::presets;
 
 use super::autosave::ago;
+use super::focus;
 use super::task::{Outcome, Task};
 use crate::command_table::{Command, row_of};
 use crate::tokens::{self, Palette};
@@ -223,7 +222,7 @@ fn thumbnail_ui(ui: &mut egui::Ui, thumbnail: &Thumbnail) -> bool {
     });
     let painter = ui.painter();
     let lit = response.hovered() || response.has_focus();
-    let fill = if lit { palette.line } else { palette.raised };
+    let fill = if lit { palette.lit } else { palette.raised };
     painter.rect_filled(rect, tokens::RADIUS, fill);
     let picture = Rect::from_min_size(rect.min, vec2(SIDE, SIDE));
     let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
@@ -250,8 +249,7 @@ fn thumbnail_ui(ui: &mut egui::Ui, thumbnail: &Thumbnail) -> bool {
         palette.quiet,
     );
     if response.has_focus() {
-        let stroke = Stroke::new(2.0, tokens::ACCENT);
-        painter.rect_stroke(rect, tokens::RADIUS, stroke, StrokeKind::Inside);
+        focus::ring(painter, rect, &palette);
     }
     response
         .on_hover_cursor(egui::CursorIcon::PointingHand)

@@ -74,6 +74,7 @@ fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
         cancelled = ui.small_button("Cancel").clicked();
         ui.add(
             ProgressBar::new(*fraction)
+                .fill(tokens::ACCENT)
                 .desired_width(tokens::SCALE_BAR)
                 .desired_height(tokens::GAP),
         );

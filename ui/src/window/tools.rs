@@ -6,6 +6,7 @@ use pickglass::edit::Document;
 
 use super::action::{Action, Button as PaintButton};
 use super::draft::{DraftPane, Layer};
+use super::focus;
 use super::icons;
 use super::panes::Pane;
 use crate::command_table::{Command, Tool, row_of};
@@ -72,15 +73,13 @@ fn sign_button(
     let (fill, ink) = if on {
         (tokens::ACCENT, Color32::WHITE)
     } else if response.hovered() {
-        (palette.line, palette.text)
+        (palette.lit, palette.text)
     } else {
         (Color32::TRANSPARENT, palette.text)
     };
     ui.painter().rect_filled(rect, tokens::RADIUS, fill);
     if response.has_focus() {
-        let stroke = Stroke::new(2.0, tokens::ACCENT);
-        ui.painter()
-            .rect_stroke(rect, tokens::RADIUS, stroke, StrokeKind::Outside);
+        focus::ring(ui.painter(), rect, &palette);
     }
     sign(ui.painter(), rect, ink);
     response.on_hover_text(tip).clicked()
@@ -185,6 +184,9 @@ fn swatches_ui(
         ui.painter()
             .rect(place, tokens::RADIUS, fill, border, StrokeKind::Inside);
     }
+    if response.has_focus() {
+        focus::ring(ui.painter(), rect, &palette);
+    }
     let name = |index: usize| colours.get(index).map_or("–", |(name, _)| name.as_str());
     let tip = format!(
         "Left button: {}\nRight button: {}\nClick or X exchanges them",
@@ -209,14 +211,18 @@ fn swatches_ui(
                 ui.painter()
                     .rect_stroke(rect.expand(1.0), tokens::RADIUS, stroke, inside);
             }
-            if response.clicked() {
+            if response.has_focus() {
+                focus::ring(ui.painter(), rect, &palette);
+            }
+            let second = ui.input(|input| input.modifiers.shift);
+            if response.secondary_clicked() || (response.clicked() && second) {
+                actions.push(wish(index, PaintButton::Second));
+            } else if response.clicked() {
                 actions.push(wish(index, PaintButton::First));
             }
-            if response.secondary_clicked() {
-                actions.push(wish(index, PaintButton::Second));
-            }
-            let tip =
-                format!("{name}\nLeft click: paint of the left button\nRight click: of the right");
+            let tip = format!(
+                "{name}\nClick: paint of the left button\nRight click, or with Shift: of the right"
+            );
             response.on_hover_text(tip);
         }
     });

@@ -1,5 +1,7 @@
 //! The few buttons over the cloth, faint until the pointer comes near.
 
+use std::ops::RangeInclusive;
+
 use egui::{Align, Layout, Rect, UiBuilder, pos2, vec2};
 
 use crate::tokens::{self, Palette};
@@ -42,7 +44,7 @@ pub fn show(ui: &mut egui::Ui, pane: Rect, says: &Says) -> Option<Wish> {
     let mut bar = ui.new_child(builder);
     bar.set_clip_rect(pane.intersect(ui.clip_rect()));
     if !says.near {
-        bar.multiply_opacity(0.55);
+        bar.multiply_opacity(tokens::FADED);
     }
     bar.spacing_mut().item_spacing = vec2(tokens::GRID, 0.0);
     bar.visuals_mut().widgets.inactive.weak_bg_fill = palette.raised;
@@ -87,11 +89,18 @@ pub fn show(ui: &mut egui::Ui, pane: Rect, says: &Says) -> Option<Wish> {
 
 /// A bank card is this wide, mm (ISO/IEC 7810 ID-1).
 const CARD_MM: f32 = 85.6;
+/// Points that it may be wide on a screen.
+const CARD_POINTS: RangeInclusive<f32> = 150.0..=900.0;
+
+/// Whether a screen may have so many millimetres a point.
+pub fn is_scale(mm_per_point: f32) -> bool {
+    CARD_POINTS.contains(&(CARD_MM / mm_per_point))
+}
 
 /// The window in which the screen's scale is set against a bank card. Returns whether it
 /// stays open.
 pub fn calibrate(ctx: &egui::Context, mm_per_point: &mut f32) -> bool {
-    let mut open = true;
+    let (mut open, mut done) = (true, false);
     egui::Window::new("Actual size on this screen")
         .open(&mut open)
         .collapsible(false)
@@ -103,13 +112,14 @@ pub fn calibrate(ctx: &egui::Context, mm_per_point: &mut f32) -> bool {
                 ui.allocate_exact_size(vec2(width, 12.0 * tokens::GRID), egui::Sense::hover());
             let palette = Palette::current(ui);
             ui.painter().rect_filled(rect, tokens::RADIUS, palette.text);
-            let slider = egui::Slider::new(&mut width, 150.0..=900.0)
+            let slider = egui::Slider::new(&mut width, CARD_POINTS)
                 .text("width of the bar")
                 .suffix(" points");
             if ui.add(slider).changed() {
                 *mm_per_point = CARD_MM / width.max(1.0);
             }
             ui.label(format!("{:.1} points a mm", 1.0 / mm_per_point.max(1e-4)));
+            done = ui.button("Done").clicked();
         });
-    open
+    open && !done
 }

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, CursorIcon, Key, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
+    Color32, ColorImage, CursorIcon, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
     pos2, vec2,
 };
 use pickglass::still::StillRequest;
 
 use crate::tokens::{self, Palette};
+use crate::window::focus;
 use crate::window::view::ClothView;
 
 /// Width of the border's handle.
@@ -60,13 +61,7 @@ impl Compare {
         if response.clicked() {
             response.request_focus();
         }
-        if response.has_focus() {
-            let step = ui.input(|input| {
-                i32::from(input.key_pressed(Key::ArrowRight))
-                    - i32::from(input.key_pressed(Key::ArrowLeft))
-            });
-            self.border += 0.05 * step as f32;
-        }
+        self.border += 0.05 * focus::arrows(ui, &response)[0] as f32;
         self.border = self.border.clamp(0.02, 0.98);
         let focused = response.has_focus() || response.hovered();
         let colour = if focused {
@@ -82,6 +77,10 @@ impl Compare {
             colour,
             Stroke::new(1.0, palette.text),
         );
+        if response.has_focus() {
+            let middle = pos2(x, pane.center().y);
+            focus::circle(&painter, middle, 2.0 * tokens::GRID, &palette);
+        }
         response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         let font = egui::TextStyle::Small.resolve(ui.style());
         let text = painter.layout_no_wrap("kept".to_owned(), font, palette.text);

@@ -21,6 +21,8 @@ const CORNERS: u32 = 96;
 pub struct Glass {
     /// Where it is held.
     held: Option<Pos2>,
+    /// It is held without a key.
+    pinned: bool,
     asked: Option<StillRequest>,
     shown: Option<(StillRequest, TextureHandle)>,
 }
@@ -39,6 +41,11 @@ impl Glass {
         self.held.is_some()
     }
 
+    /// Holds it without a key, or lets go.
+    pub fn pin(&mut self) {
+        self.pinned = !self.pinned;
+    }
+
     /// Takes a newer picture.
     pub fn take(&mut self, ctx: &egui::Context, picture: Picture) {
         let texture = match self.shown.take() {
@@ -51,8 +58,9 @@ impl Glass {
         self.shown = Some((picture.still, texture));
     }
 
-    /// Follows the pointer while the key is down or the pane is pressed with Shift.
-    /// `still` is what the pane shows.
+    /// Follows the pointer while the key is down or the pane is pressed with Shift. Where the
+    /// pointer is elsewhere, the keyboard's glass stands in the middle. `still` is what the
+    /// pane shows.
     pub fn hold(
         &mut self,
         ui: &egui::Ui,
@@ -61,19 +69,22 @@ impl Glass {
         view: ClothView,
         still: Option<&StillRequest>,
     ) -> Option<Wish> {
-        let typing = ui
-            .memory(|memory| memory.focused())
-            .is_some_and(|id| id != response.id);
-        let (key, pressed) = ui.input(|input| {
+        let typing = ui.ctx().text_edit_focused();
+        let (key, pressed, escape) = ui.input(|input| {
             let pressed = input.modifiers.shift && input.pointer.primary_down();
-            (input.key_down(KEY) && !input.modifiers.any(), pressed)
+            let key = input.key_down(KEY) && !input.modifiers.any();
+            (key && !typing, pressed, input.key_pressed(Key::Escape))
         });
+        self.pinned &= !escape;
         let pointer = response
             .hover_pos()
             .or_else(|| response.interact_pointer_pos());
+        let pointer = pointer.filter(|at| pane.contains(*at));
+        let by_hand = key || (pressed && response.is_pointer_button_down_on());
+        let by_keyboard = self.pinned || (key && response.has_focus());
         let here = pointer
-            .filter(|at| pane.contains(*at))
-            .filter(|_| (key && !typing) || (pressed && response.is_pointer_button_down_on()));
+            .filter(|_| by_hand || by_keyboard)
+            .or_else(|| by_keyboard.then(|| pane.center()));
         let was_held = self.held.is_some();
         self.held = here;
         let Some(at) = here else {

@@ -1,9 +1,10 @@
 //! The lamp: a small dome over the cloth on which one drags the light about.
 
-use egui::{Key, Pos2, Rect, Sense, Stroke, vec2};
+use egui::{Pos2, Rect, Sense, Stroke, vec2};
 use pickglass::still::{Heading, LightChoice};
 
 use crate::tokens::{self, Palette};
+use crate::window::focus;
 
 /// Radius of the dome.
 pub const RADIUS: f32 = 7.0 * tokens::GRID;
@@ -54,24 +55,12 @@ pub fn show(ui: &mut egui::Ui, middle: Pos2, light: &mut LightChoice) {
     {
         *light = LightChoice::Sun(heading(middle, at));
     }
-    if response.has_focus() {
-        ui.memory_mut(|memory| {
-            let arrows = egui::EventFilter {
-                horizontal_arrows: true,
-                vertical_arrows: true,
-                ..Default::default()
-            };
-            memory.set_focus_lock_filter(response.id, arrows);
+    let [turn, lift] = focus::arrows(ui, &response).map(|by| by.clamp(-9, 9) as i16);
+    if turn != 0 || lift != 0 {
+        *light = LightChoice::Sun(Heading {
+            azimuth: (now.azimuth - turn * STEP + 180).rem_euclid(360) - 180,
+            elevation: (now.elevation + lift * STEP).clamp(LOWEST, 90),
         });
-        let pressed = |key| ui.input(|input| i16::from(input.key_pressed(key)));
-        let turn = pressed(Key::ArrowLeft) - pressed(Key::ArrowRight);
-        let lift = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
-        if turn != 0 || lift != 0 {
-            *light = LightChoice::Sun(Heading {
-                azimuth: (now.azimuth + turn * STEP + 180).rem_euclid(360) - 180,
-                elevation: (now.elevation + lift * STEP).clamp(LOWEST, 90),
-            });
-        }
     }
     let painter = ui.painter();
     painter.circle(
@@ -87,7 +76,7 @@ pub fn show(ui: &mut egui::Ui, middle: Pos2, light: &mut LightChoice) {
     painter.line_segment([middle, at], Stroke::new(1.0, colour));
     painter.circle(at, tokens::GRID, colour, Stroke::new(1.0, palette.text));
     if response.has_focus() {
-        painter.circle_stroke(middle, RADIUS + 2.0, Stroke::new(2.0, tokens::ACCENT));
+        focus::circle(painter, middle, RADIUS, &palette);
     }
     response.on_hover_text(format!("{spoken}. Drag it to put the light elsewhere."));
 }

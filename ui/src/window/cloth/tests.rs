@@ -10,12 +10,14 @@ use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::presets;
 use pickglass::still::{EffectBase, EffectChoice, LightChoice};
 
+use crate::window::action::Action;
 use crate::window::preview::{Preview, PreviewSettings};
 
-/// A cloth view and its document.
+/// A cloth view, its document, and what was asked for so far.
 struct Bench {
     preview: Option<Preview>,
     document: Document,
+    asked: Vec<Action>,
 }
 
 fn bench() -> Harness<'static, Bench> {
@@ -25,6 +27,7 @@ fn bench() -> Harness<'static, Bench> {
     let bench = Bench {
         preview: None,
         document: Document::new(design),
+        asked: Vec::new(),
     };
     Harness::builder().with_size([640.0, 480.0]).build_ui_state(
         |ui, bench: &mut Bench| {
@@ -43,6 +46,7 @@ fn bench() -> Harness<'static, Bench> {
             let mut actions = Vec::new();
             preview.poll(&ui.ctx().clone(), &mut actions);
             preview.show(ui, &bench.document, &mut actions);
+            bench.asked.extend(actions);
         },
         bench,
     )
@@ -87,6 +91,65 @@ fn the_glass_shows_while_its_key_is_held() {
     );
     // The pane goes on with what it showed.
     shown(&mut harness);
+}
+
+#[test]
+fn the_glass_is_held_by_the_keyboard_alone() {
+    let mut harness = bench();
+    shown(&mut harness);
+    let has_picture = |harness: &Harness<'_, Bench>| {
+        let preview = harness.state().preview.as_ref();
+        preview.is_some_and(Preview::glass_has_picture)
+    };
+    // The key means nothing while the keyboard is elsewhere.
+    harness.key_down(Key::Q);
+    harness.run_steps(3);
+    harness.key_up(Key::Q);
+    harness.run_steps(2);
+    assert!(!has_picture(&harness));
+    harness.get_by_label_contains("Cloth of ").focus();
+    harness.run_steps(2);
+    harness.key_down(Key::Q);
+    harness.step();
+    wait(&mut harness, "the glass", Preview::glass_has_picture);
+    harness.key_up(Key::Q);
+    harness.run_steps(2);
+    assert!(!has_picture(&harness));
+
+    // From a menu it stays until Esc.
+    let ctx = harness.ctx.clone();
+    if let Some(preview) = &mut harness.state_mut().preview {
+        preview.pin_glass(&ctx);
+    }
+    wait(&mut harness, "the glass", Preview::glass_has_picture);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(!has_picture(&harness));
+}
+
+#[test]
+fn the_scale_of_the_screen_is_set_by_keys() {
+    let mut harness = bench();
+    shown(&mut harness);
+    harness.get_by_label("Calibrate").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    let usual = harness.state().preview.as_ref().map(|p| p.mm_per_point);
+    harness.get_by_label("Done").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Done").is_none());
+    let told = harness
+        .state()
+        .asked
+        .iter()
+        .find_map(|action| match action {
+            Action::Calibrated(scale) => Some(*scale),
+            _ => None,
+        });
+    assert_eq!(told, usual);
 }
 
 #[test]

@@ -50,6 +50,7 @@ impl DraftPane {
                 key: "drawdown",
                 name: &name,
                 blocked,
+                rows_down: false,
             },
             to_cell,
         );
@@ -176,7 +177,29 @@ impl DraftPane {
         look.centre[1] += into(pick, &picks) as f64;
     }
 
-    /// The right button paints, so the menu is on Shift+F10.
+    /// As [`Self::keep_in_sight`], in a band: its threads, and its shafts and treadles.
+    fn keep_band_in_sight(&mut self, areas: &Areas, grid: &CellGrid, band: Band, (x, y): Cell) {
+        let middle = grid.crossing(areas.drawdown.center());
+        match band {
+            Band::Threading | Band::WarpBar => self.keep_in_sight(grid, (x, middle.1)),
+            Band::Treadling | Band::WeftBar => self.keep_in_sight(grid, (middle.0, y)),
+            Band::TieUp => {}
+        }
+        let Some(loom) = areas.loom else { return };
+        let mut show = |axis: usize, at: i64, length: f32| {
+            let fits = ((length / loom.cell).round() as i64).max(1);
+            let first = loom.first[axis];
+            self.first_shaft[axis] = first.min(at).max(at - fits + 1).max(0);
+        };
+        if matches!(band, Band::Threading | Band::TieUp) {
+            show(0, y, areas.threading.height());
+        }
+        if matches!(band, Band::Treadling | Band::TieUp) {
+            show(1, x, areas.treadling.width());
+        }
+    }
+
+    /// The right button paints, so the menu is on its own key and on Shift+F10.
     fn menu_of_canvas(
         &self,
         ui: &egui::Ui,
@@ -186,22 +209,38 @@ impl DraftPane {
     ) {
         let (end, pick) = self.drawdown.cursor.unwrap_or((0, 0));
         let wanted = response.has_focus()
-            && ui.input(|input| input.modifiers.shift && input.key_pressed(Key::F10));
+            && ui.input(|input| {
+                let shifted = input.modifiers.shift && input.key_pressed(Key::F10);
+                shifted || input.key_pressed(Key::Menu)
+            });
+        let id = response.id.with("menu");
+        let was_open = egui::Popup::is_id_open(ui.ctx(), id);
         let popup = egui::Popup::from_response(response)
-            .id(response.id.with("menu"))
+            .id(id)
             .at_position(grid.rect(end, pick, 1, 1).right_bottom())
             .open_memory(wanted.then_some(egui::SetOpenCommand::Toggle))
             .close_behavior(egui::PopupCloseBehavior::CloseOnClick);
         popup.show(|ui| {
-            for command in CANVAS_MENU {
+            for (place, command) in CANVAS_MENU.into_iter().enumerate() {
                 let Some(row) = row_of(command) else {
                     continue;
                 };
-                if ui.button(row.label).on_hover_text(row.tip).clicked() {
+                let button = ui.button(row.label).on_hover_text(row.tip);
+                if button.clicked() {
                     actions.push(Action::Command(command));
+                    ui.close();
+                }
+                // The menu has the keyboard as long as it is open.
+                if place == 0 && ui.memory(|memory| memory.has_focus(response.id)) {
+                    button.request_focus();
                 }
             }
         });
+        // Whoever used the keys goes on where the menu was opened.
+        let by_keys = !ui.input(|input| input.pointer.any_down() || input.pointer.any_released());
+        if was_open && by_keys && !egui::Popup::is_id_open(ui.ctx(), id) {
+            response.request_focus();
+        }
     }
 
     pub(super) fn band_touches(
@@ -231,10 +270,15 @@ impl DraftPane {
                     key: band.name(false),
                     name,
                     blocked,
+                    rows_down: !areas.above && matches!(band, Band::Threading | Band::TieUp),
                 },
                 to_cell,
             );
+            let moved = zone.shown_cursor() != self.bands[index].shown_cursor();
             self.bands[index] = zone;
+            if let Some(cursor) = zone.shown_cursor().filter(|_| moved) {
+                self.keep_band_in_sight(areas, grid, band, cursor);
+            }
             for touch in touches {
                 self.band_stroke(ui, document, band, touch, actions);
             }
@@ -299,6 +343,13 @@ impl DraftPane {
                 } else {
                     self.band_stroke = Some((band, set, button, cell));
                 }
+            }
+            Touch::Range(from, to, button) => {
+                let set = bands::sets(design, band, to, button);
+                actions.push(Action::Begin(band.name(lift_plan).to_owned()));
+                let path = cells_between(document, from, to);
+                actions.extend(edit(&path, set, button).map(Action::edit));
+                actions.push(Action::Finish);
             }
             Touch::Drag(cell) => {
                 if let Some((band, set, button, from)) = self.band_stroke {

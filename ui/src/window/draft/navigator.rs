@@ -1,12 +1,14 @@
 //! The navigator: three by three repeats, small, with a frame round what is seen. Dragging
 //! in it moves the view.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Rect, Sense, Stroke, TextureHandle, TextureOptions, pos2, vec2};
 use pickglass::design::{Colouring, Design, Repeat, SwatchWindow, WeavePattern};
 use pickglass::edit::{Change, Document};
 
+use super::super::focus;
 use super::super::task::{Outcome, Task};
 use super::areas::Areas;
 use super::grid::CellGrid;
@@ -15,6 +17,8 @@ use crate::tokens::{self, Palette};
 
 /// Pixels along the longer side of one repeat.
 const SIDE: u32 = 96;
+/// An arrow key moves the view by this share of the repeat.
+const KEY_STEP: f64 = 0.1;
 
 /// The navigator's picture of one repeat.
 #[derive(Default)]
@@ -127,6 +131,20 @@ impl Navigator {
         let id = egui::Id::unique("navigator");
         let response = ui.interact(rect, id, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Navigator"));
+        if response.clicked() {
+            response.request_focus();
+        }
+        if response.has_focus() {
+            focus::ring(&painter, rect.expand(2.0), &palette);
+        }
+        let [across, along] = focus::arrows(ui, &response).map(f64::from);
+        if across != 0.0 || along != 0.0 {
+            let middle = |seen: &RangeInclusive<i64>| (seen.start() + seen.end() + 1) as f64 / 2.0;
+            return Some([
+                middle(&seen_ends) + across * ends * KEY_STEP,
+                middle(&seen_picks) + along * picks * KEY_STEP,
+            ]);
+        }
         let at = response.interact_pointer_pos()?;
         let share = (at - rect.left_bottom()) / rect.size();
         Some([

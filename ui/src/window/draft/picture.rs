@@ -4,9 +4,11 @@ use egui::{Rect, Shape};
 use pickglass::design::Colouring;
 use pickglass::edit::Document;
 
+use super::super::focus;
 use super::areas::Areas;
 use super::bands::Band;
 use super::grid::{CellGrid, Look};
+use super::zone::{Cell, Zone};
 use super::{DraftPane, Layer, bands_picture, draw};
 use crate::command_table::Tool;
 use crate::tokens::{self, Palette};
@@ -54,6 +56,10 @@ impl DraftPane {
         self.draw_stamp(&painter, grid);
         let whole = ui.painter();
         bands_picture::show(whole, grid, areas, design, &palette);
+        if let Some(hover) = self.hover {
+            draw::crosshair(whole, grid, areas, hover);
+        }
+        // Over the crosshair, so that its number can be read.
         draw::rulers(
             whole,
             grid,
@@ -63,9 +69,6 @@ impl DraftPane {
             self.hover,
             &palette,
         );
-        if let Some(hover) = self.hover {
-            draw::crosshair(whole, grid, areas, hover);
-        }
         self.draw_focus(ui, areas, grid);
     }
 
@@ -83,28 +86,31 @@ impl DraftPane {
         let Some(focused) = ui.memory(|memory| memory.focused()) else {
             return;
         };
+        let palette = Palette::current(ui);
         let frame = |rect: Rect, cursor: Option<Rect>| {
-            let stroke = egui::Stroke::new(2.0, tokens::ACCENT);
-            let painter = ui.painter_at(rect.expand(3.0));
-            painter.rect_stroke(rect.expand(1.0), 0.0, stroke, egui::StrokeKind::Middle);
+            let around = rect.expand(tokens::FOCUS);
+            focus::ring(&ui.painter_at(around), around, &palette);
             if let Some(cursor) = cursor {
                 draw::outline(&ui.painter_at(rect), cursor);
             }
         };
         if Some(focused) == self.drawdown.id() {
-            let cursor = self
-                .drawdown
-                .shown_cursor()
-                .map(|(end, pick)| grid.rect(end, pick, 1, 1));
-            frame(areas.drawdown, cursor);
+            let place = |(end, pick)| grid.rect(end, pick, 1, 1);
+            frame(areas.drawdown, marked(&self.drawdown, place));
         }
         for (band, zone) in Band::ALL.into_iter().zip(&self.bands) {
             if Some(focused) == zone.id() {
-                let cursor = zone
-                    .shown_cursor()
-                    .map(|cell| band.place(areas, grid, cell));
-                frame(band.rect(areas), cursor);
+                let place = |cell| band.place(areas, grid, cell);
+                frame(band.rect(areas), marked(zone, place));
             }
         }
+    }
+}
+
+/// The keyboard's cell of a field, or its range.
+fn marked(zone: &Zone, place: impl Fn(Cell) -> Rect) -> Option<Rect> {
+    match zone.shown_range() {
+        Some((from, to)) => Some(place(from).union(place(to))),
+        None => zone.shown_cursor().map(place),
     }
 }

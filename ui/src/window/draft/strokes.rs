@@ -44,6 +44,45 @@ impl DraftPane {
                 actions.push(Action::Cancel);
             }
             Touch::Key(cell, button) => self.key(document, cell, button, actions),
+            Touch::Range(from, to, button) => self.range(document, from, to, button, actions),
+        }
+    }
+
+    /// What a key does with a range: as if the tool had been drawn from one corner to the
+    /// other, except that the pencil fills the range.
+    fn range(
+        &mut self,
+        document: &Document,
+        from: Cell,
+        to: Cell,
+        button: Button,
+        actions: &mut Vec<Action>,
+    ) {
+        let tool = self.tool();
+        let surface = self.surface(document);
+        match tool {
+            Tool::Pencil | Tool::Line | Tool::Rectangle => {
+                let path = match tool {
+                    Tool::Line => line(&surface, from, to),
+                    _ => rectangle(&surface, from, to, true),
+                };
+                self.tool_used();
+                actions.push(Action::Begin(tool_name(tool).to_owned()));
+                self.paint(document, path, button, actions);
+                actions.push(Action::Finish);
+            }
+            Tool::Select => self.select_between(document, from, to),
+            Tool::Move => match self.selection() {
+                Some(rect) => {
+                    actions.push(Action::Begin(tool_name(tool).to_owned()));
+                    self.move_by(document, rect, (to.0 - from.0, to.1 - from.1), actions);
+                    actions.push(Action::Finish);
+                }
+                None => actions.push(nothing("Nothing is selected: select crossings first (S).")),
+            },
+            Tool::Fill | Tool::Replace | Tool::Picker | Tool::Stamp => {
+                self.key(document, to, button, actions);
+            }
         }
     }
 

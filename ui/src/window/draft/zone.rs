@@ -5,6 +5,9 @@ use egui::{Event, Key, PointerButton, Pos2, Rect, Response, Sense};
 
 use super::super::action::Button;
 
+/// Cells that an arrow key goes with Ctrl.
+const FAR: i64 = 8;
+
 /// A cell: column from the left and row from below, in the field's own numbers.
 pub type Cell = (i64, i64);
 
@@ -21,6 +24,8 @@ pub enum Touch {
     Cancel,
     /// A key paints the cell under the keyboard's cursor.
     Key(Cell, Button),
+    /// A key paints from one corner of a range to the other, where the cursor is.
+    Range(Cell, Cell, Button),
 }
 
 /// Where a field lies and what it is called.
@@ -33,6 +38,8 @@ pub struct Field<'n> {
     pub name: &'n str,
     /// No stroke begins in it now.
     pub blocked: bool,
+    /// Its rows are numbered downwards.
+    pub rows_down: bool,
 }
 
 /// A field's own state.
@@ -40,14 +47,16 @@ pub struct Field<'n> {
 pub struct Zone {
     /// The cell that keys act on.
     pub cursor: Option<Cell>,
+    /// Where the range begins that Shift and the arrow keys made.
+    anchor: Option<Cell>,
     /// The stroke that is being made, and the cell it has reached.
     stroke: Option<(PointerButton, Cell)>,
     /// The widget, once it was shown.
     id: Option<egui::Id>,
     /// The pointer was used last: the keyboard's cursor would only be in the way.
     by_pointer: bool,
-    /// Space was used to move the view: letting it go paints nothing.
-    space_used: bool,
+    /// Space went down here and has not moved the view: letting it go paints.
+    space_held: bool,
 }
 
 impl Zone {
@@ -59,6 +68,11 @@ impl Zone {
     /// The cell that keys act on, while keys are used.
     pub fn shown_cursor(&self) -> Option<Cell> {
         self.cursor.filter(|_| !self.by_pointer)
+    }
+
+    /// The range of cells that keys act on, if there is one: two corners.
+    pub fn shown_range(&self) -> Option<(Cell, Cell)> {
+        self.anchor.zip(self.shown_cursor())
     }
 
     /// Whether a stroke is being made.
@@ -73,7 +87,7 @@ impl Zone {
 
     /// Says that Space moved the view.
     pub fn space_used(&mut self) {
-        self.space_used = true;
+        self.space_held = false;
     }
 
     /// Makes a field of the screen; `to_cell` tells the cell under a point.
@@ -88,6 +102,7 @@ impl Zone {
             key,
             name,
             blocked,
+            rows_down,
         } = *field;
         let id = egui::Id::unique(("field", key));
         self.id = Some(id);
@@ -96,7 +111,7 @@ impl Zone {
         let mut touches = Vec::new();
         self.pointer(ui, &response, &to_cell, blocked, &mut touches);
         if response.has_focus() {
-            self.keys(ui, &response, &mut touches);
+            self.keys(ui, &response, rows_down, &mut touches);
         }
         (response, touches)
     }
@@ -132,6 +147,7 @@ impl Zone {
                         self.stroke = Some((button, cell));
                         self.by_pointer = true;
                         self.cursor = Some(cell);
+                        self.anchor = None;
                         touches.push(Touch::Press(cell, side));
                     }
                     Event::PointerMoved(pos) => {
@@ -169,7 +185,13 @@ impl Zone {
         }
     }
 
-    fn keys(&mut self, ui: &egui::Ui, response: &Response, touches: &mut Vec<Touch>) {
+    fn keys(
+        &mut self,
+        ui: &egui::Ui,
+        response: &Response,
+        rows_down: bool,
+        touches: &mut Vec<Touch>,
+    ) {
         let filter = egui::EventFilter {
             horizontal_arrows: true,
             vertical_arrows: true,
@@ -177,13 +199,10 @@ impl Zone {
             ..Default::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        let cursor = self.cursor.get_or_insert((0, 0));
         ui.input(|input| {
-            if input.modifiers.alt || input.modifiers.command {
+            if input.modifiers.alt {
                 return;
             }
-            // Shift goes further at once.
-            let step = if input.modifiers.shift { 8 } else { 1 };
             for event in &input.events {
                 let Event::Key {
                     key,
@@ -195,26 +214,66 @@ impl Zone {
                 else {
                     continue;
                 };
-                let button = if modifiers.shift {
-                    Button::Second
-                } else {
-                    Button::First
+                let up = if rows_down { -1 } else { 1 };
+                let arrow = match key {
+                    Key::ArrowLeft => Some((-1, 0)),
+                    Key::ArrowRight => Some((1, 0)),
+                    Key::ArrowUp => Some((0, up)),
+                    Key::ArrowDown => Some((0, -up)),
+                    _ => None,
                 };
-                self.by_pointer = false;
-                match (key, pressed) {
-                    (Key::ArrowLeft, true) => cursor.0 -= step,
-                    (Key::ArrowRight, true) => cursor.0 += step,
-                    (Key::ArrowUp, true) => cursor.1 += step,
-                    (Key::ArrowDown, true) => cursor.1 -= step,
-                    (Key::Enter, true) if !repeat => touches.push(Touch::Key(*cursor, button)),
-                    // Space may also move the view: it paints when it is let go.
-                    (Key::Space, true) if !repeat => self.space_used = false,
-                    (Key::Space, false) if !self.space_used => {
-                        touches.push(Touch::Key(*cursor, button));
-                    }
-                    _ => {}
+                if let Some(by) = arrow.filter(|_| pressed) {
+                    self.step(by, modifiers);
+                    continue;
+                }
+                if !modifiers.command || key == Key::Enter {
+                    self.paint_key(key, pressed && !repeat, pressed, modifiers.shift, touches);
                 }
             }
+        });
+    }
+
+    /// Moves the cursor: Ctrl goes further at once, Shift makes a range.
+    fn step(&mut self, (x, y): Cell, modifiers: egui::Modifiers) {
+        let cursor = self.cursor.get_or_insert((0, 0));
+        if modifiers.shift {
+            self.anchor.get_or_insert(*cursor);
+        } else {
+            self.anchor = None;
+        }
+        let far = if modifiers.command { FAR } else { 1 };
+        *cursor = (cursor.0 + x * far, cursor.1 + y * far);
+        self.by_pointer = false;
+    }
+
+    /// Enter paints, and Space when it is let go, since Space may also move the view.
+    fn paint_key(
+        &mut self,
+        key: Key,
+        struck: bool,
+        pressed: bool,
+        shift: bool,
+        touches: &mut Vec<Touch>,
+    ) {
+        match (key, pressed) {
+            (Key::Space, true) if struck => {
+                self.space_held = true;
+                return;
+            }
+            (Key::Escape, true) => {
+                self.anchor = None;
+                return;
+            }
+            (Key::Enter, true) if struck => {}
+            (Key::Space, false) if std::mem::take(&mut self.space_held) => {}
+            _ => return,
+        }
+        self.by_pointer = false;
+        let button = if shift { Button::Second } else { Button::First };
+        let cursor = *self.cursor.get_or_insert((0, 0));
+        touches.push(match self.anchor.take() {
+            Some(from) => Touch::Range(from, cursor, button),
+            None => Touch::Key(cursor, button),
         });
     }
 }

@@ -8,6 +8,7 @@ use pickglass::edit::{Document, Edit};
 use super::swatches;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::focus;
 
 /// Side of a thumbnail, in pixels and points.
 const THUMB: usize = 96;
@@ -88,7 +89,7 @@ impl Colourways {
             ui.painter()
                 .image(texture.id(), rect, whole, egui::Color32::WHITE);
         }
-        let colour = if response.hovered() || response.has_focus() || at.is_none() {
+        let colour = if response.hovered() || at.is_none() {
             tokens::ACCENT
         } else {
             Palette::current(ui).line
@@ -96,6 +97,9 @@ impl Colourways {
         let inside = egui::StrokeKind::Inside;
         ui.painter()
             .rect_stroke(rect, 0.0, Stroke::new(2.0, colour), inside);
+        if response.has_focus() {
+            focus::ring(ui.painter(), rect, &Palette::current(ui));
+        }
         if response.on_hover_text(&spoken).clicked()
             && let Some(at) = at
         {

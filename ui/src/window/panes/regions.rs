@@ -75,9 +75,12 @@ impl RegionList {
         actions: &mut Vec<Action>,
     ) {
         let name = region.name.clone();
+        let mut focused = false;
         let row = ui.horizontal(|ui| {
             let colour = region.colour.unwrap_or(Srgb(128, 128, 128));
-            if swatches::field(ui, colour, &format!("Paint region {name}")).clicked() {
+            let paint = swatches::field(ui, colour, &format!("Paint region {name}"));
+            focused |= paint.has_focus();
+            if paint.clicked() {
                 actions.push(Action::PaintRegion(number, Button::First));
             }
             let weave = match region.fill.notation() {
@@ -92,6 +95,7 @@ impl RegionList {
                 .on_hover_text("Another weave; the outlines stay");
             let spoken = format!("Weave of {name}: {weave}");
             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
+            focused |= button.has_focus();
             if button.clicked() {
                 self.picker = Some((number, WeavePicker::default()));
             }
@@ -138,7 +142,7 @@ impl RegionList {
                     .color(Palette::current(ui).quiet),
             );
         });
-        if ui.rect_contains_pointer(row.response.rect) {
+        if focused || ui.rect_contains_pointer(row.response.rect) {
             actions.push(Action::Mark(Mark::Region(number)));
         }
     }

@@ -4,6 +4,7 @@ use egui::{Response, Sense, Stroke, vec2};
 use pickglass::design::Srgb;
 
 use crate::tokens::{self, Palette};
+use crate::window::focus;
 
 /// Side of a swatch.
 pub const SIDE: f32 = 6.0 * tokens::GRID;
@@ -16,6 +17,9 @@ pub fn field(ui: &mut egui::Ui, colour: Srgb, name: &str) -> Response {
     let fill = tokens::yarn_colour(red, green, blue);
     let inside = egui::StrokeKind::Inside;
     ui.painter().rect(rect, tokens::RADIUS, fill, line, inside);
+    if response.has_focus() {
+        focus::ring(ui.painter(), rect, &Palette::current(ui));
+    }
     let spoken = format!("{name}, {colour}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
     response

@@ -117,6 +117,22 @@ fn yarns_are_opened_exchanged_and_joined() {
 }
 
 #[test]
+fn a_yarn_that_has_the_keyboard_shows_where_it_lies() {
+    let mut harness = bench("default", Pane::Yarns);
+    harness.run_steps(3);
+    let marked = |harness: &Harness<'_, Bench>| {
+        let asked = &harness.state().asked;
+        asked
+            .iter()
+            .any(|action| matches!(action, Action::Mark(Mark::Yarn(_))))
+    };
+    assert!(!marked(&harness));
+    harness.get_by_label("ecru").focus();
+    harness.run_steps(3);
+    assert!(marked(&harness));
+}
+
+#[test]
 fn colourways_are_duplicated_renamed_and_used() {
     let mut harness = bench("oxford", Pane::Colourways);
     harness.run_steps(2);

@@ -6,6 +6,7 @@ use egui::{Key, RichText, ScrollArea, Sense, Stroke, TextEdit, TextureHandle, ve
 use pickglass::design::{Fill, LibraryWeave, library};
 
 use crate::tokens::{self, Palette};
+use crate::window::focus;
 
 /// Crossings along a side of a thumbnail.
 const CROSSINGS: usize = 16;
@@ -99,11 +100,17 @@ impl WeavePicker {
         let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
         ui.painter()
             .image(texture, picture, whole, egui::Color32::WHITE);
-        let lit = response.hovered() || response.has_focus();
-        let line = if lit { tokens::ACCENT } else { palette.line };
+        let line = if response.hovered() {
+            tokens::ACCENT
+        } else {
+            palette.line
+        };
         let inside = egui::StrokeKind::Inside;
         ui.painter()
             .rect_stroke(picture, 0.0, Stroke::new(1.0, line), inside);
+        if response.has_focus() {
+            focus::ring(ui.painter(), rect, &palette);
+        }
         let font = egui::TextStyle::Small.resolve(ui.style());
         let room = width - SIDE - tokens::GAP;
         let text = ui

@@ -113,6 +113,7 @@ impl Yarns {
             return;
         };
         let quiet = Palette::current(ui).quiet;
+        let mut focused = false;
         let row = ui.horizontal(|ui| {
             let mut changed = yarn.clone();
             let colour = swatches::button(ui, &mut changed.colour, &yarn.name);
@@ -123,6 +124,7 @@ impl Yarns {
             let open = self.open == Some(index);
             let name = ui.selectable_label(open, &yarn.name);
             let name = name.on_hover_text("Where it lies shows in the draft; click for more");
+            focused = name.has_focus() || colour.has_focus();
             if name.clicked() {
                 self.open = if open { None } else { Some(index) };
             }
@@ -144,7 +146,7 @@ impl Yarns {
             }
             ui.label(RichText::new(told).small().color(quiet));
         });
-        if row.response.contains_pointer() || ui.rect_contains_pointer(row.response.rect) {
+        if focused || ui.rect_contains_pointer(row.response.rect) {
             actions.push(Action::Mark(Mark::Yarn(id)));
         }
         if self.open == Some(index) {

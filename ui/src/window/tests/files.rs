@@ -12,17 +12,17 @@ use crate::window::app::{App, AppOptions};
 use crate::window::autosave::RecoveryFolder;
 use crate::window::settings::SettingsFile;
 
-fn invert(window: &mut Window) {
+pub fn invert(window: &mut Window) {
     window.key_press_modifiers(Modifiers::COMMAND, Key::I);
     window.run_steps(2);
 }
 
-fn modified(window: &Window) -> bool {
+pub fn modified(window: &Window) -> bool {
     window.state().document().expect("open").is_modified()
 }
 
 /// Types a path into the field that stands in for the system's dialog.
-fn type_path(window: &mut Window, path: &str, button: &str) {
+pub fn type_path(window: &mut Window, path: &str, button: &str) {
     wait_for(window, "the field", |window| {
         window.query_by_role(Role::TextInput).is_some()
     });

@@ -2,6 +2,8 @@
 //! on a software adapter.
 
 mod files;
+mod hard;
+mod keys;
 mod large;
 mod opening;
 mod painting;

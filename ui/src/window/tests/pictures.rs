@@ -1,8 +1,9 @@
 //! Reference pictures of the window on a software adapter.
 
+use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui::pos2;
 use egui_kittest::SnapshotOptions;
-use egui_kittest::wgpu::WgpuTestRenderer;
+use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
 
 use super::{build, builder, open, shows, wait_for};
 use crate::command_table::{Command, DraftLayout};
@@ -12,8 +13,14 @@ use crate::window::session::blank;
 /// A renderer of snapshots. Without an adapter the test is skipped, or fails where
 /// goldens are required.
 pub fn renderer(test: &str) -> Option<WgpuTestRenderer> {
-    let renderer = std::panic::catch_unwind(WgpuTestRenderer::new).ok();
-    if renderer.is_none() {
+    render_state(test).map(WgpuTestRenderer::from_render_state)
+}
+
+/// A device of a test's own, as [`renderer`].
+pub fn render_state(test: &str) -> Option<RenderState> {
+    let create = || create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
+    let state = std::panic::catch_unwind(create).ok();
+    if state.is_none() {
         let required = std::env::var_os("GOLDEN_REQUIRED").is_some();
         assert!(
             !required,
@@ -21,7 +28,7 @@ pub fn renderer(test: &str) -> Option<WgpuTestRenderer> {
         );
         eprintln!("skipped {test}: no graphics adapter: install mesa-vulkan-drivers");
     }
-    renderer
+    state
 }
 
 /// Software adapters compile for the processor at hand, so a few edge pixels differ.
