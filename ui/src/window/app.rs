@@ -130,6 +130,7 @@ impl App {
             undo: document.filter(|d| d.can_undo()).and_then(|_| name(at)),
             redo: document.filter(|d| d.can_redo()).and_then(|_| name(at + 1)),
             selection: self.draft.selection().is_some(),
+            colourways: document.is_some_and(|d| !d.design().colourways().is_empty()),
             view: self.preview.view,
             light: &self.preview.light,
             paused: self.preview.paused,
@@ -161,7 +162,6 @@ impl App {
             Some(Choice::Preset(name)) => self.leave_for(&ctx, super::asking::Next::Preset(name)),
             Some(Choice::Recent(path)) => self.leave_for(&ctx, super::asking::Next::File(path)),
             Some(Choice::Light(preset)) => self.set_light(preset),
-            Some(Choice::Show(pane)) => self.layout.bring(pane),
             None => {}
         }
     }

@@ -7,7 +7,6 @@ use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
 
-use super::panes::Pane;
 use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
 use crate::tokens::{self, Palette};
 
@@ -17,7 +16,6 @@ pub enum Choice {
     Preset(&'static str),
     Recent(PathBuf),
     Light(&'static str),
-    Show(Pane),
 }
 
 /// What the menus show as chosen, and what can be done now.
@@ -27,6 +25,8 @@ pub struct Situation<'s> {
     pub undo: Option<String>,
     pub redo: Option<String>,
     pub selection: bool,
+    /// Whether there are colourways to change to.
+    pub colourways: bool,
     pub view: View,
     pub light: &'s LightChoice,
     pub paused: bool,
@@ -55,6 +55,7 @@ impl Situation<'_> {
             | Command::Shortcuts => true,
             Command::Undo => self.undo.is_some(),
             Command::Redo => self.redo.is_some(),
+            Command::NextColourway => self.open && self.colourways,
             Command::Cut
             | Command::Copy
             | Command::Clear
@@ -139,7 +140,6 @@ fn menu_ui(ui: &mut egui::Ui, menu: Menu, situation: &Situation<'_>) -> Option<C
     if menu == Menu::View {
         ui.separator();
         choice = lights_ui(ui, situation.light).or(choice);
-        choice = panes_ui(ui).or(choice);
     }
     choice
 }
@@ -200,19 +200,6 @@ fn lights_ui(ui: &mut egui::Ui, light: &LightChoice) -> Option<Choice> {
             let on = matches!(light, LightChoice::Preset(current) if current == preset);
             if ui.add(Button::selectable(on, preset)).clicked() {
                 choice = Some(Choice::Light(preset));
-                ui.close();
-            }
-        }
-    });
-    choice
-}
-
-fn panes_ui(ui: &mut egui::Ui) -> Option<Choice> {
-    let mut choice = None;
-    ui.menu_button("Panes", |ui| {
-        for pane in Pane::ALL {
-            if ui.button(pane.title()).clicked() {
-                choice = Some(Choice::Show(pane));
                 ui.close();
             }
         }

@@ -48,6 +48,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::opened::Opened;
 use app::AppOptions;
 use autosave::RecoveryFolder;
+pub use panes::Pane;
 use settings::SettingsFile;
 
 /// Why there is no window.

@@ -90,6 +90,14 @@ pub struct Panes {
     history: History,
 }
 
+#[cfg(test)]
+impl Panes {
+    /// Ends and regions of the picture that was posterised.
+    pub fn posterised(&self) -> Option<(u32, usize)> {
+        self.posterise.made_of()
+    }
+}
+
 impl Panes {
     /// Shows a pane.
     pub fn show(

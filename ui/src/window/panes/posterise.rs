@@ -326,6 +326,17 @@ impl Posterise {
 
 #[cfg(test)]
 impl Posterise {
+    /// Ends and regions of what was made, once nothing newer is under way.
+    pub fn made_of(&self) -> Option<(u32, usize)> {
+        let Some(Ok(made)) = self.made.answer().filter(|_| !self.made.is_working()) else {
+            return None;
+        };
+        match made.design.structure() {
+            Structure::Regions(regions) => Some((made.design.ends(), regions.palette().len())),
+            _ => None,
+        }
+    }
+
     /// Takes a picture as if it had been read, for a small cloth.
     pub fn take_small(&mut self, ctx: &egui::Context, source: SourceImage) {
         self.settings.ends = Some(64);

@@ -2,6 +2,7 @@
 //! on a software adapter.
 
 mod files;
+mod flow;
 mod large;
 mod opening;
 mod painting;
