@@ -205,6 +205,7 @@ impl App {
         draft.set_hover(self.hover);
         preview.marked = self.hover;
         panes.section.follow(self.hover);
+        panes.arrangement = draft.show.arrangement;
         Panel::left("tools")
             .exact_size(tokens::TOOLS_WIDTH)
             .resizable(false)
@@ -305,8 +306,12 @@ impl App {
         }
         // What is asked is answered before anything else is done.
         let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
-        if !asked && let Some(command) = menu::pressed(&ctx) {
+        while !asked && let Some(command) = menu::pressed(&ctx) {
             self.obey(&ctx, command);
+            // Keys pressed in one slow frame are all meant.
+            if !menu::goes_on(command) {
+                break;
+            }
         }
         self.ask_before_closing(&ctx);
         Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
