@@ -96,7 +96,8 @@ class Desk:
     def _start_screen(self):
         reading, writing = os.pipe()
         width, height = self.size
-        shape = ["-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
+        # Without -noreset it forgets all when the first client goes, while the next comes.
+        shape = ["-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset"]
         memory = ["-fbdir", str(self.folder / "screen")]
         self.running.append(
             subprocess.Popen(
@@ -195,6 +196,31 @@ class Desk:
     def write(self, text):
         self.xdo("type", "--delay", 15, text)
 
+    def fill(self, name, role, text, enter=True):
+        """Types into a field in place of what is there. Letters that are typed before it has
+        the keyboard would be commands."""
+        self.still(name, role)
+        # A click that comes late would move the cursor in the text.
+        if self._typed(name, role) is None:
+            self.click(name, role)
+        self.until(f"{name!r} to be typed into", lambda: self._typed(name, role) is not None)
+        self.key("ctrl+a")
+        self.write(str(text))
+        self.until(f"{text!r} in {name!r}", lambda: self._typed(name, role) == str(text))
+        if enter:
+            self.key("Return")
+
+    def _typed(self, name, role):
+        """The text of a field that has the keyboard."""
+        node = self.find(name, role)
+        if node is None or not node.states >> screen.FOCUSED & 1:
+            return None
+        try:
+            return self.screen.text(node)
+        except BusError:
+            # A number that is not being edited has no text.
+            return None
+
     # The eye.
 
     def nodes(self):
@@ -205,8 +231,9 @@ class Desk:
             return []
 
     def find(self, name, role=None, part=False):
-        """The first node of this name (or with it as a part), if any."""
-        for node in self.nodes():
+        """The node of this name (or with it as a part), if any; of several the last, since
+        what lies above comes after what it covers."""
+        for node in reversed(self.nodes()):
             fits = name in node.name if part else name == node.name
             if fits and (role is None or node.role == screen.ROLES[role]):
                 return node

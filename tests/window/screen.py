@@ -10,7 +10,7 @@ ROLES = {
     "button": 43,
     "slider": 51,
     "number": 52,
-    "tab": 37,
+    "tab": 62,
     "field": 79,
 }
 # Bits of the first word of a state set.
