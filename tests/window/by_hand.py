@@ -121,9 +121,7 @@ class Flow:
     def command(self, typed):
         """Finds a command in the palette and does it."""
         self.desk.key("ctrl+k")
-        self.desk.still("Command to find", "field")
-        self.desk.write(typed)
-        self.desk.key("Return")
+        self.desk.fill("Command to find", "field", typed)
         self.desk.gone("Command to find")
 
     def passes(self):
