@@ -72,6 +72,7 @@ prepare_system() {
     if have apt-get && have dpkg-query; then
         install mesa-vulkan-drivers libvulkan1 xvfb xauth libxkbcommon-x11-0 libxkbcommon0 \
             libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2 libwayland-client0 \
+            xdotool dbus at-spi2-core \
             python3 python3-venv python3-openvdb libopenvdb-tools libnanovdb-tools
         [[ $bench == no ]] || install libllvm15
     else
@@ -211,6 +212,19 @@ smoke_lost_device() {
     fi
 }
 
+# Mouse, keys and a screen reader's eyes on a screen of its own; what is lacking is told.
+# Of a failure pictures are kept in $target/window.
+window_by_hand() {
+    local status=0
+    have python3 || { lacks "python3, and with it the window by hand"; return 0; }
+    python3 tests/window/by_hand.py "$target/release/pickglass" "$target/window" || status=$?
+    if ((status == 2)); then
+        lacks "what the window is driven by hand with (xdotool dbus at-spi2-core)"
+        return 0
+    fi
+    return "$status"
+}
+
 # With no display: the picture instead, and a line that says so.
 smoke_no_display() {
     local folder=$scratch/no-display program
@@ -250,6 +264,7 @@ check_all() {
         step "window" smoke_window
         step "no adapter" smoke_no_adapter
         step "lost device" smoke_lost_device
+        step "window by hand" window_by_hand
     else
         lacks "Xvfb, and with it the check of the window"
     fi

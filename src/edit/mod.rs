@@ -36,6 +36,7 @@ mod whole;
 
 pub use cells::{Cells, Rect};
 pub use change::{Change, Touched};
+pub use colourways::next_colourway;
 pub use document::Document;
 pub use edits::{Direction, Edit, Rows};
 pub use error::EditError;

@@ -4,6 +4,8 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 use pickglass::render::View;
 
+use crate::window::Pane;
+
 /// How a loom's parts are laid round the drawdown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum DraftLayout {
@@ -95,6 +97,7 @@ pub enum Command {
     SymmetryAlong,
     DeriveDraft,
     BecomeJacquard,
+    NextColourway,
     Arrange(DraftLayout),
     Use(Tool),
     SwapColours,
@@ -118,6 +121,7 @@ pub enum Command {
     Pause,
     Theme,
     NextPane,
+    Show(Pane),
     ResetLayout,
     Palette,
     Shortcuts,
@@ -132,6 +136,7 @@ pub enum Menu {
     Tools,
     Cloth,
     View,
+    Panes,
     Help,
 }
 
@@ -144,6 +149,7 @@ impl Menu {
         Self::Tools,
         Self::Cloth,
         Self::View,
+        Self::Panes,
         Self::Help,
     ];
 
@@ -156,6 +162,7 @@ impl Menu {
             Self::Tools => "Tools",
             Self::Cloth => "Cloth",
             Self::View => "View",
+            Self::Panes => "Panes",
             Self::Help => "Help",
         }
     }
@@ -263,6 +270,7 @@ pub const TABLE: &[Row] = &[
     row(Command::Loom, Menu::Weave, "Loom…", "Shafts and treadles, lift plan, rising or sinking shed", &[]),
     row(Command::BecomeJacquard, Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])
     ,
+    apart(row(Command::NextColourway, Menu::Weave, "Next colourway", "Weave in the yarns of the next colourway by name; after the last comes the first", &[shift(Key::C)])),
     apart(row(Command::Words, Menu::Weave, "Name and notes…", "What the design is called, and what to remember", &[])),
     apart(row(Command::Arrange(DraftLayout::Us), Menu::Weave, "US layout", "Threading above, ends counted from the right", &[])),
     row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below, ends counted from the left", &[]),
@@ -310,7 +318,18 @@ pub const TABLE: &[Row] = &[
     apart(row(Command::Pause, Menu::View, "Pause refining", "Stop and resume the refining of the picture", &[shift(Key::P)])),
     row(Command::NextPane, Menu::View, "Draft or cloth", "Exchange the keyboard between draft and cloth", &[plain(Key::F6)]),
     row(Command::Theme, Menu::View, "Light or dark", "Change between the light and the dark theme", &[ctrl(Key::T)]),
-    row(Command::ResetLayout, Menu::View, "Reset layout", "Put all panes back to their usual places", &[]),
+
+    row(Command::Show(Pane::Floats), Menu::Panes, "Show floats", "Floats that are too long, one by one", &[alt(Key::Num1)]),
+    row(Command::Show(Pane::Yarns), Menu::Panes, "Show yarns", "Colour, count and family of each yarn, stripes, metres", &[alt(Key::Num2)]),
+    row(Command::Show(Pane::Colourways), Menu::Panes, "Show colourways", "Named sets of yarns for one structure, side by side", &[alt(Key::Num3)]),
+    row(Command::Show(Pane::Sett), Menu::Panes, "Show sett", "Ends and picks per cm or inch, reed, take-up, shrinkage", &[alt(Key::Num4)]),
+    row(Command::Show(Pane::Posterise), Menu::Panes, "Show posterising", "A picture in a few colours, each with a weave", &[alt(Key::Num5)]),
+    row(Command::Show(Pane::Section), Menu::Panes, "Show the section", "How the yarns pass over and under along an end or a pick", &[alt(Key::Num6)]),
+    row(Command::Show(Pane::History), Menu::Panes, "Show history", "All changes by name; a click goes back to one", &[alt(Key::Num7)]),
+    row(Command::Show(Pane::Log), Menu::Panes, "Show log", "All that was said, warnings and errors", &[alt(Key::Num8)]),
+    apart(row(Command::Show(Pane::Draft), Menu::Panes, "Show draft", "Bring the draft to the front", &[])),
+    row(Command::Show(Pane::Cloth), Menu::Panes, "Show cloth", "Bring the cloth to the front", &[]),
+    apart(row(Command::ResetLayout, Menu::Panes, "Reset layout", "Put all panes back to their usual places", &[])),
 
     row(Command::Palette, Menu::Help, "Find a command…", "Type a few letters of what you want to do", &[ctrl(Key::K)]),
     row(Command::Shortcuts, Menu::Help, "Keyboard shortcuts", "Show this table", &[plain(Key::F1)]),
@@ -392,12 +411,15 @@ mod tests {
     }
 
     #[test]
-    fn every_view_tool_and_layout_has_a_command() {
+    fn every_view_tool_and_pane_has_a_command() {
         for view in View::ALL {
             assert!(row_of(Command::Look(view)).is_some());
         }
         for tool in Tool::ALL {
             assert!(row_of(Command::Use(tool)).is_some());
+        }
+        for pane in Pane::ALL {
+            assert!(row_of(Command::Show(pane)).is_some());
         }
     }
 

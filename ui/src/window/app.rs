@@ -193,6 +193,7 @@ impl App {
             undo: document.filter(|d| d.can_undo()).and_then(|_| name(at)),
             redo: document.filter(|d| d.can_redo()).and_then(|_| name(at + 1)),
             selection: self.draft.selection().is_some(),
+            colourways: document.is_some_and(|d| !d.design().colourways().is_empty()),
             view: self.preview.view,
             light: &self.preview.light,
             paused: self.preview.paused,
@@ -224,7 +225,6 @@ impl App {
             Some(Choice::Preset(name)) => self.leave_for(&ctx, super::asking::Next::Preset(name)),
             Some(Choice::Recent(path)) => self.leave_for(&ctx, super::asking::Next::File(path)),
             Some(Choice::Light(preset)) => self.set_light(preset),
-            Some(Choice::Show(pane)) => self.layout.bring(pane),
             None => {}
         }
     }
@@ -269,6 +269,7 @@ impl App {
         draft.set_hover(self.hover);
         preview.marked = self.hover;
         panes.section.follow(self.hover);
+        panes.arrangement = draft.show.arrangement;
         Panel::left("tools")
             .exact_size(tokens::TOOLS_WIDTH)
             .resizable(false)
@@ -374,8 +375,12 @@ impl App {
         self.pick_up(&ctx);
         // What is asked is answered before anything else is done.
         let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
-        if !asked && let Some(command) = menu::pressed(&ctx) {
+        while !asked && let Some(command) = menu::pressed(&ctx) {
             self.obey(&ctx, command);
+            // Keys pressed in one slow frame are all meant.
+            if !menu::goes_on(command) {
+                break;
+            }
         }
         self.ask_before_closing(&ctx);
         Panel::top("menu").show(ui, |ui| self.menu_ui(ui));

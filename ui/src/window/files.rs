@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use egui::{Id, Key, Modal, RichText};
 use pickglass::design::Design;
@@ -115,7 +116,8 @@ impl Purpose {
 struct Dialog {
     purpose: Purpose,
     proposed: String,
-    task: Task<Option<PathBuf>>,
+    /// The choice, and how long it was made for, s.
+    task: Task<(Option<PathBuf>, f64)>,
 }
 
 struct TypedPath {
@@ -177,7 +179,12 @@ impl Files {
             return;
         }
         let offered = proposed.clone();
-        let task = Task::start(ctx, "dialog", move || purpose.dialog(&offered));
+        let task = Task::start(ctx, "dialog", move || {
+            // Measured here: the window may be slow to pick the answer up.
+            let begun = Instant::now();
+            let choice = purpose.dialog(&offered);
+            (choice, begun.elapsed().as_secs_f64())
+        });
         match task {
             Ok(task) => {
                 self.dialog = Some(Dialog {
@@ -327,15 +334,15 @@ impl Files {
             let choice = match dialog.task.poll() {
                 Outcome::Working => None,
                 Outcome::Ready(choice) => Some(choice),
-                Outcome::Lost => Some(None),
+                Outcome::Lost => Some((None, 0.0)),
             };
-            if let Some(choice) = choice
+            if let Some((choice, seconds)) = choice
                 && let Some(dialog) = self.dialog.take()
             {
                 match choice {
                     Some(path) => self.choose(ctx, dialog.purpose, path),
                     // No portal and no helper program: the dialog never was there.
-                    None if dialog.task.seconds() < NEVER_OPENED => self.type_for(
+                    None if seconds < NEVER_OPENED => self.type_for(
                         dialog.purpose,
                         dialog.proposed,
                         "This system offers no file dialog.",

@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 
 use egui::containers::menu::MenuConfig;
-use egui::{Button, Grid, Id, KeyboardShortcut, MenuBar, Modal, Modifiers, RichText};
+use egui::{Button, Grid, Id, Key, KeyboardShortcut, MenuBar, Modal, Modifiers, RichText};
 use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
 
-use super::panes::Pane;
 use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
 use crate::tokens::{self, Palette};
 
@@ -18,7 +17,6 @@ pub enum Choice {
     Preset(&'static str),
     Recent(PathBuf),
     Light(&'static str),
-    Show(Pane),
 }
 
 /// What the menus show as chosen, and what can be done now.
@@ -28,6 +26,8 @@ pub struct Situation<'s> {
     pub undo: Option<String>,
     pub redo: Option<String>,
     pub selection: bool,
+    /// Whether there are colourways to change to.
+    pub colourways: bool,
     pub view: View,
     pub light: &'s LightChoice,
     pub paused: bool,
@@ -56,6 +56,7 @@ impl Situation<'_> {
             | Command::Shortcuts => true,
             Command::Undo => self.undo.is_some(),
             Command::Redo => self.redo.is_some(),
+            Command::NextColourway => self.open && self.colourways,
             Command::Cut
             | Command::Copy
             | Command::Clear
@@ -142,7 +143,6 @@ fn menu_ui(ui: &mut egui::Ui, menu: Menu, situation: &Situation<'_>) -> Option<C
     if menu == Menu::View {
         ui.separator();
         choice = lights_ui(ui, situation.light).or(choice);
-        choice = panes_ui(ui).or(choice);
     }
     choice
 }
@@ -212,19 +212,6 @@ fn lights_ui(ui: &mut egui::Ui, light: &LightChoice) -> Option<Choice> {
     choice
 }
 
-fn panes_ui(ui: &mut egui::Ui) -> Option<Choice> {
-    let mut choice = None;
-    ui.menu_button("Panes", |ui| {
-        for pane in Pane::ALL {
-            if ui.button(pane.title()).clicked() {
-                choice = Some(Choice::Show(pane));
-                ui.close();
-            }
-        }
-    });
-    choice
-}
-
 /// The single key of a command.
 pub fn key_of(command: Command) -> Option<egui::Key> {
     let row = TABLE.iter().find(|row| row.command == command)?;
@@ -235,31 +222,66 @@ pub fn key_of(command: Command) -> Option<egui::Key> {
     Some(single.logical_key)
 }
 
-/// The command whose shortcut was pressed. Keys without Ctrl or Alt act only while no text
-/// field has the focus.
+/// The command whose shortcut was pressed first, and which is then no key any more. Keys
+/// without Ctrl or Alt act only while no text field has the focus.
 pub fn pressed(ctx: &egui::Context) -> Option<Command> {
     let typing = ctx.egui_wants_keyboard_input() && ctx.text_edit_focused();
     if !typing && let Some(command) = clipboard(ctx) {
         return Some(command);
     }
-    // A shortcut also matches with more modifiers held than it names: most named first.
-    let mut rows: Vec<(&KeyboardShortcut, Command)> = (TABLE.iter())
-        .flat_map(|row| row.shortcuts.iter().map(|shortcut| (shortcut, row.command)))
-        .collect();
-    rows.sort_by_key(|(shortcut, _)| std::cmp::Reverse(count(shortcut.modifiers)));
-    rows.into_iter().find_map(|(shortcut, command)| {
-        let modifiers = shortcut.modifiers;
-        let alone = !modifiers.command && !modifiers.alt;
-        if alone && (typing || !ctx.input(|input| plain(input.modifiers, modifiers))) {
-            return None;
-        }
-        // In a text field, select all, undo and the like mean its text.
-        if typing && !outside_text(command) {
-            return None;
-        }
-        ctx.input_mut(|input| input.consume_shortcut(shortcut))
-            .then_some(command)
+    ctx.input_mut(|input| {
+        let (place, command) = (input.events.iter().enumerate()).find_map(|(place, event)| {
+            let egui::Event::Key {
+                key,
+                pressed: true,
+                modifiers,
+                ..
+            } = event
+            else {
+                return None;
+            };
+            // In a text field, select all, undo and the like mean its text.
+            command_of(*key, *modifiers, typing)
+                .filter(|command| !typing || outside_text(*command))
+                .map(|command| (place, command))
+        })?;
+        input.events.remove(place);
+        Some(command)
     })
+}
+
+/// What a key means with what was held when it went down: by the end of a slow frame, Shift
+/// may be up again.
+fn command_of(key: Key, held: Modifiers, typing: bool) -> Option<Command> {
+    let shortcuts =
+        (TABLE.iter()).flat_map(|row| row.shortcuts.iter().map(|shortcut| (shortcut, row.command)));
+    let fits = |shortcut: &KeyboardShortcut| {
+        let named = shortcut.modifiers;
+        if named.command || named.alt {
+            held.matches_logically(named)
+        } else {
+            !typing && plain(held, named)
+        }
+    };
+    // A shortcut also matches with more held than it names: the one that names most is meant.
+    shortcuts
+        .filter(|(shortcut, _)| shortcut.logical_key == key && fits(shortcut))
+        .max_by_key(|(shortcut, _)| count(shortcut.modifiers))
+        .map(|(_, command)| command)
+}
+
+/// Whether a command can be followed by another in the same frame: it opens nothing that
+/// the next key might be meant for.
+pub fn goes_on(command: Command) -> bool {
+    matches!(
+        command,
+        Command::Undo
+            | Command::Redo
+            | Command::Roll(_)
+            | Command::ZoomIn
+            | Command::ZoomOut
+            | Command::NextColourway
+    )
 }
 
 /// Whether a command's keys act while a text is typed: those of files and of the palette.
@@ -371,4 +393,30 @@ fn gestures_ui(ui: &mut egui::Ui) {
                 ui.end_row();
             }
         });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_means_what_was_held_with_it() {
+        let shift = Modifiers::SHIFT;
+        let of = |key, held| command_of(key, held, false);
+        assert_eq!(
+            of(Key::P, Modifiers::NONE),
+            Some(Command::Use(Tool::Pencil))
+        );
+        assert_eq!(of(Key::P, shift), Some(Command::Pause));
+        assert_eq!(of(Key::P, Modifiers::COMMAND), Some(Command::Print));
+        assert_eq!(of(Key::Z, shift), Some(Command::Redo));
+        assert_eq!(
+            of(Key::Z, Modifiers::COMMAND.plus(shift)),
+            Some(Command::Redo)
+        );
+        // A sign that is typed with Shift on some keyboards.
+        assert_eq!(of(Key::Plus, shift), Some(Command::ZoomIn));
+        assert_eq!(of(Key::R, Modifiers::ALT), None);
+        assert_eq!(command_of(Key::P, Modifiers::NONE, true), None);
+    }
 }

@@ -55,6 +55,7 @@ use crate::opened::Opened;
 use app::AppOptions;
 use autosave::RecoveryFolder;
 pub use lost::Restarts;
+pub use panes::Pane;
 use settings::SettingsFile;
 
 /// Why there is no window.

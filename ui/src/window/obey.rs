@@ -63,6 +63,7 @@ impl App {
             }
             Command::Palette => self.palette.open(),
             Command::Shortcuts => self.show_shortcuts = true,
+            Command::Show(pane) => self.layout.bring(pane),
             Command::ResetLayout => self.layout.reset(),
             Command::NextPane => {
                 if self.draft.has_focus(ctx) {

@@ -29,7 +29,6 @@ impl CommandPalette {
         if !self.open {
             return None;
         }
-        let rows = matching(&self.typed);
         let (up, down, enter) = ctx.input_mut(|input| {
             let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
             (
@@ -38,15 +37,7 @@ impl CommandPalette {
                 pressed(Key::Enter),
             )
         });
-        self.chosen = (self.chosen + usize::from(down))
-            .saturating_sub(usize::from(up))
-            .min(rows.len().saturating_sub(1));
-        let moved = up || down;
-        let mut command = (enter)
-            .then(|| rows.get(self.chosen))
-            .flatten()
-            .filter(|row| situation.allows(row.command))
-            .map(|row| row.command);
+        let mut command = None;
         let modal = Modal::new(Id::unique("palette")).show(ctx, |ui| {
             ui.set_width(1.5 * tokens::TOAST_WIDTH);
             let field = ui.add(
@@ -64,6 +55,16 @@ impl CommandPalette {
             if field.changed() {
                 self.chosen = 0;
             }
+            // Enter in the frame in which the letters came means what they found.
+            let rows = matching(&self.typed);
+            self.chosen = (self.chosen + usize::from(down))
+                .saturating_sub(usize::from(up))
+                .min(rows.len().saturating_sub(1));
+            command = (enter)
+                .then(|| rows.get(self.chosen))
+                .flatten()
+                .filter(|row| situation.allows(row.command))
+                .map(|row| row.command);
             ui.add_space(tokens::GRID);
             let quiet = Colours::current(ui).quiet;
             if rows.is_empty() {
@@ -73,7 +74,8 @@ impl CommandPalette {
                 .max_height(tokens::LIST_HEIGHT * 1.5)
                 .show(ui, |ui| {
                     for (index, row) in rows.iter().enumerate() {
-                        let clicked = row_ui(ui, row, index == self.chosen, moved, situation);
+                        let chosen = index == self.chosen;
+                        let clicked = row_ui(ui, row, chosen, up || down, situation);
                         command = clicked.then_some(row.command).or(command);
                     }
                 });

@@ -2,12 +2,10 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
-use std::time::Instant;
 
 /// Work under way. Dropping it forgets the result.
 pub struct Task<T> {
     result: Receiver<T>,
-    begun: Instant,
 }
 
 /// What became of a task.
@@ -36,10 +34,7 @@ impl<T: Send + 'static> Task<T> {
                 drop(sender);
                 ctx.request_repaint();
             })?;
-        Ok(Self {
-            result,
-            begun: Instant::now(),
-        })
+        Ok(Self { result })
     }
 
     /// Looks without waiting.
@@ -49,10 +44,5 @@ impl<T: Send + 'static> Task<T> {
             Err(TryRecvError::Empty) => Outcome::Working,
             Err(TryRecvError::Disconnected) => Outcome::Lost,
         }
-    }
-
-    /// How long it has been at work, s.
-    pub fn seconds(&self) -> f64 {
-        self.begun.elapsed().as_secs_f64()
     }
 }

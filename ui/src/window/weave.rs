@@ -1,7 +1,7 @@
 //! The commands that change the weave, and those of the clipboard.
 
 use pickglass::design::WeavePattern;
-use pickglass::edit::{Cells, Clip, Direction, Edit, Rect};
+use pickglass::edit::{Cells, Clip, Direction, Edit, Rect, next_colourway};
 
 use super::app::App;
 use super::forms::Form;
@@ -116,6 +116,10 @@ impl App {
                 Edit::DeriveDraft { after: None }
             }
             Command::BecomeJacquard => Edit::BecomeJacquard { then: None },
+            Command::NextColourway => match next_colourway(design) {
+                Some(colourway) => Edit::UseColourway(colourway),
+                None => return,
+            },
             _ => return,
         };
         self.edit(edit);

@@ -314,7 +314,7 @@ pub fn rulers(
     let [seen_ends, seen_picks] = grid.visible();
     let density = grid.density;
 
-    let step = ruler_step(grid.cell, 34.0 * density);
+    let numbered = |number, count, width| is_numbered(number, count, grid.cell, width * density);
     let clipped = painter.with_clip_rect(areas.end_ruler);
     for end in seen_ends {
         let number = end_number(end, ends, arrangement);
@@ -322,7 +322,7 @@ pub fn rulers(
         let near = hover.is_some_and(|(at, _)| {
             ((at - end).abs() as f64) * grid.cell < 26.0 * density && at != end
         });
-        if !here && (near && grid.cell >= LINES_FROM || number % step != 0 && number != 1) {
+        if !here && (near && grid.cell >= LINES_FROM || !numbered(number, ends, 34.0)) {
             continue;
         }
         let middle = (grid.x(end) + grid.x(end + 1)) / 2.0;
@@ -331,7 +331,6 @@ pub fn rulers(
         clipped.text(at, Align2::CENTER_CENTER, number, font.clone(), colour);
     }
 
-    let step = ruler_step(grid.cell, 16.0 * density);
     let clipped = painter.with_clip_rect(areas.pick_ruler);
     for pick in seen_picks {
         let number = pick.rem_euclid(picks) + 1;
@@ -339,7 +338,7 @@ pub fn rulers(
         let near = hover.is_some_and(|(_, at)| {
             ((at - pick).abs() as f64) * grid.cell < 12.0 * density && at != pick
         });
-        if !here && (near && grid.cell >= LINES_FROM || number % step != 0 && number != 1) {
+        if !here && (near && grid.cell >= LINES_FROM || !numbered(number, picks, 16.0)) {
             continue;
         }
         let middle = (grid.y(pick) + grid.y(pick + 1)) / 2.0;
@@ -347,6 +346,13 @@ pub fn rulers(
         let at = pos2(areas.pick_ruler.right() - tokens::GRID, middle);
         clipped.text(at, Align2::RIGHT_CENTER, number, font.clone(), colour);
     }
+}
+
+/// Whether a ruler shows this number of `count`: each 1, and steps as far apart as a number
+/// of `width` pixels needs, where the next repeat's 1 is no nearer.
+fn is_numbered(number: i64, count: i64, cell: f64, width: f64) -> bool {
+    let to_next = (count + 1 - number) as f64 * cell;
+    number == 1 || (number % ruler_step(cell, width) == 0 && to_next >= width)
 }
 
 /// The number a weaver gives an end: from 1, on the side where the layout begins to count.
@@ -361,6 +367,18 @@ pub fn end_number(end: i64, ends: i64, arrangement: DraftLayout) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_a_ruler_keep_apart_over_the_repeats_edge() {
+        let shown = |count: i64| -> Vec<i64> {
+            (1..=count)
+                .filter(|&number| is_numbered(number, count, 3.0, 34.0))
+                .collect()
+        };
+        assert_eq!(shown(120), [1, 20, 40, 60, 80, 100]);
+        assert_eq!(shown(132), [1, 20, 40, 60, 80, 100, 120]);
+        assert_eq!(shown(8), [1]);
+    }
 
     #[test]
     fn ends_are_counted_from_the_side_of_the_layout() {

@@ -80,7 +80,7 @@ impl DraftPane {
         // Without a pointer the keyboard's cursor is what is looked at.
         let looked_at = match at {
             Some(at) if !moved => Some(grid.crossing(at)),
-            _ if focused => self.drawdown.cursor,
+            _ if focused => self.drawdown.shown_cursor(),
             _ => None,
         };
         if looked_at.is_some() {

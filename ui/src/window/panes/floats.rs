@@ -7,8 +7,10 @@ use pickglass::design::{ClothBox, FaceFloat, long_floats_in};
 use pickglass::edit::Document;
 
 use super::later::Later;
+use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Mark};
+use crate::window::draft::end_number;
 
 /// Floats that are listed.
 const MOST_LISTED: usize = 400;
@@ -51,7 +53,13 @@ impl Floats {
 
 impl Floats {
     /// Shows the list.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+    pub fn show(
+        &mut self,
+        ui: &mut egui::Ui,
+        document: &Document,
+        arrangement: DraftLayout,
+        actions: &mut Vec<Action>,
+    ) {
         let quiet = Palette::current(ui).quiet;
         let design = document.design();
         // An end floats over picks, a pick over ends.
@@ -95,13 +103,16 @@ impl Floats {
         } else {
             String::new()
         };
-        ui.label(RichText::new(format!("{} long floats{more}{working}", found.all)).color(quiet));
+        let floats = if found.all == 1 { "float" } else { "floats" };
+        let told = format!("{} long {floats}{more}{working}", found.all);
+        ui.label(RichText::new(told).color(quiet));
+        let number = |end| end_number(end, i64::from(design.ends()), arrangement);
         let row = ui.spacing().interact_size.y;
         ScrollArea::vertical()
             .auto_shrink(false)
             .show_rows(ui, row, listed, |ui, rows| {
                 for float in &found.floats[rows] {
-                    float_ui(ui, float, pitch, actions);
+                    float_ui(ui, float, number(float.end), pitch, actions);
                 }
             });
     }
@@ -136,17 +147,22 @@ impl Floats {
     }
 }
 
-fn float_ui(ui: &mut egui::Ui, float: &FaceFloat, pitch: [f32; 2], actions: &mut Vec<Action>) {
+/// One float; `end` is the number of its first end.
+fn float_ui(
+    ui: &mut egui::Ui,
+    float: &FaceFloat,
+    end: i64,
+    pitch: [f32; 2],
+    actions: &mut Vec<Action>,
+) {
     let (what, thread, mm) = if float.warp {
-        ("End", float.end, float.length as f32 * pitch[0])
+        ("End", end, float.length as f32 * pitch[0])
     } else {
-        ("Pick", float.pick, float.length as f32 * pitch[1])
+        ("Pick", float.pick + 1, float.length as f32 * pitch[1])
     };
     let text = format!(
-        "{what} {} over {} ({mm:.1} mm), from end {}, pick {}",
-        thread + 1,
+        "{what} {thread} over {} ({mm:.1} mm), from end {end}, pick {}",
         float.length,
-        float.end + 1,
         float.pick + 1
     );
     let response = ui.selectable_label(false, text);

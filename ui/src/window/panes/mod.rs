@@ -21,6 +21,7 @@ use pickglass::edit::Document;
 use serde::{Deserialize, Serialize};
 
 use super::action::Action;
+use crate::command_table::DraftLayout;
 use colourways::Colourways;
 use floats::Floats;
 use history::History;
@@ -80,6 +81,8 @@ impl Pane {
 /// The state of the panes below the views.
 #[derive(Default)]
 pub struct Panes {
+    /// How ends are counted, as on the draft.
+    pub arrangement: DraftLayout,
     pub log: Log,
     pub section: Section,
     floats: Floats,
@@ -88,6 +91,14 @@ pub struct Panes {
     sett: SettPane,
     posterise: Posterise,
     history: History,
+}
+
+#[cfg(test)]
+impl Panes {
+    /// Ends and regions of the picture that was posterised.
+    pub fn posterised(&self) -> Option<(u32, usize)> {
+        self.posterise.made_of()
+    }
 }
 
 impl Panes {
@@ -101,12 +112,16 @@ impl Panes {
     ) {
         match pane {
             Pane::Log => self.log.show(ui, document, actions),
-            Pane::Floats => self.floats.show(ui, document, actions),
+            Pane::Floats => {
+                self.floats.show(ui, document, self.arrangement, actions);
+            }
             Pane::Yarns => self.yarns.show(ui, document, actions),
             Pane::Colourways => self.colourways.show(ui, document, actions),
             Pane::Sett => self.sett.show(ui, document, actions),
             Pane::Posterise => self.posterise.show(ui, document, actions),
-            Pane::Section => self.section.show(ui, document, actions),
+            Pane::Section => {
+                self.section.show(ui, document, self.arrangement, actions);
+            }
             Pane::History => self.history.show(ui, document, actions),
             // Views of their own.
             Pane::Draft | Pane::Cloth => {}

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{DragValue, RichText, ScrollArea, TextEdit, TextureHandle, TextureOptions};
+use egui::{DragValue, RichText, ScrollArea, TextEdit, TextureHandle, TextureOptions, Vec2, vec2};
 use pickglass::design::{Design, Regions, SourceImage, Srgb, Structure};
 use pickglass::edit::{Document, Edit};
 use pickglass::formats::photo;
@@ -20,6 +20,8 @@ use crate::window::toasts::Grade;
 
 /// Longer side of a picture on the screen, pixels.
 const SHOWN: usize = 512;
+/// From this width of the pane on, points, the pictures stand beside the settings.
+const BESIDE: f32 = 840.0;
 /// Colours one can ask for here.
 const COLOURS: std::ops::RangeInclusive<u16> = 2..=24;
 
@@ -70,11 +72,37 @@ impl Posterise {
             self.settings.picks = Some(document.design().picks());
             self.own_size = true;
         }
+        let beside = self.picture.is_some() && ui.available_width() > BESIDE;
+        if beside {
+            // The regions stay in sight while one looks at the map.
+            ui.columns(2, |columns| {
+                let height = columns[1].available_height();
+                self.controls_ui(&mut columns[0], document, regions, None, actions);
+                self.pictures_ui(&mut columns[1], height);
+            });
+        } else {
+            let width = ui.available_width();
+            self.controls_ui(ui, document, regions, Some(1.6 * width), actions);
+        }
+    }
+
+    /// The settings and the regions; between them the pictures, where they have this height.
+    fn controls_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        document: &Document,
+        regions: Option<&Regions>,
+        pictures: Option<f32>,
+        actions: &mut Vec<Action>,
+    ) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.source_ui(ui);
             if self.picture.is_some() {
                 self.settings_ui(ui, document);
                 self.work_ui(ui, document, actions);
+                if let Some(height) = pictures {
+                    self.pictures_ui(ui, height);
+                }
             }
             if let Some(regions) = regions {
                 ui.separator();
@@ -296,25 +324,6 @@ impl Posterise {
                 ui.spinner();
             }
         });
-        ui.horizontal_wrapped(|ui| {
-            let room = (ui.available_width() / 2.0 - tokens::GAP).clamp(80.0, 360.0);
-            let aspect = picture.source.height() as f32 / picture.source.width().max(1) as f32;
-            shown_ui(ui, &picture.texture, room, aspect, "The picture");
-            if let Some((_, map)) = &self.map {
-                let sett = made.design.sett();
-                let size = [
-                    ends as f32 * sett.ends.mean_pitch_mm(),
-                    picks as f32 * sett.picks.mean_pitch_mm(),
-                ];
-                shown_ui(
-                    ui,
-                    map,
-                    room,
-                    size[1] / size[0].max(1e-6),
-                    "Its map of regions",
-                );
-            }
-        });
         for warning in &made.warnings {
             ui.horizontal_wrapped(|ui| {
                 icons::show(ui, Grade::Warning, palette.warning);
@@ -322,10 +331,41 @@ impl Posterise {
             });
         }
     }
+
+    /// The picture and its map side by side, at most `height` points high.
+    fn pictures_ui(&self, ui: &mut egui::Ui, height: f32) {
+        let (Some(picture), Some(Ok(made))) = (&self.picture, self.made.answer()) else {
+            return;
+        };
+        ui.horizontal_wrapped(|ui| {
+            let width = (ui.available_width() / 2.0 - tokens::GAP).clamp(80.0, 360.0);
+            let room = vec2(width, height.min(1.6 * width));
+            let aspect = picture.source.height() as f32 / picture.source.width().max(1) as f32;
+            shown_ui(ui, &picture.texture, room, aspect, "The picture");
+            if let Some((_, map)) = &self.map {
+                let sett = made.design.sett();
+                let across = made.design.ends() as f32 * sett.ends.mean_pitch_mm();
+                let along = made.design.picks() as f32 * sett.picks.mean_pitch_mm();
+                let aspect = along / across.max(1e-6);
+                shown_ui(ui, map, room, aspect, "Its map of regions");
+            }
+        });
+    }
 }
 
 #[cfg(test)]
 impl Posterise {
+    /// Ends and regions of what was made, once nothing newer is under way.
+    pub fn made_of(&self) -> Option<(u32, usize)> {
+        let Some(Ok(made)) = self.made.answer().filter(|_| !self.made.is_working()) else {
+            return None;
+        };
+        match made.design.structure() {
+            Structure::Regions(regions) => Some((made.design.ends(), regions.palette().len())),
+            _ => None,
+        }
+    }
+
     /// Takes a picture as if it had been read, for a small cloth.
     pub fn take_small(&mut self, ctx: &egui::Context, source: SourceImage) {
         self.settings.ends = Some(64);
@@ -355,9 +395,10 @@ fn fit_name(fit: Fit) -> &'static str {
     }
 }
 
-fn shown_ui(ui: &mut egui::Ui, texture: &TextureHandle, width: f32, aspect: f32, name: &str) {
-    let height = (width * aspect).min(width * 1.6);
-    let size = egui::vec2(height / aspect.max(1e-6), height);
+/// A picture as large as its shape and the room allow.
+fn shown_ui(ui: &mut egui::Ui, texture: &TextureHandle, room: Vec2, aspect: f32, name: &str) {
+    let height = (room.x * aspect).min(room.y);
+    let size = vec2(height / aspect.max(1e-6), height);
     let image = egui::Image::new((texture.id(), size))
         .fit_to_exact_size(size)
         .alt_text(name);

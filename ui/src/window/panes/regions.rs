@@ -33,7 +33,8 @@ impl RegionList {
             .ask(ui.ctx(), &document.revision(), move |_| areas(&design));
         let count = regions.palette().len();
         ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new(format!("{count} regions")).strong());
+            let regions = if count == 1 { "region" } else { "regions" };
+            ui.label(RichText::new(format!("{count} {regions}")).strong());
             let sort = ui.button("Sort by area");
             if sort
                 .on_hover_text("The largest first; the cloth stays")

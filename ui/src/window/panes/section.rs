@@ -5,6 +5,7 @@ use pickglass::design::{Srgb, YarnId};
 use pickglass::edit::Document;
 use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
 
+use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 
@@ -44,7 +45,30 @@ impl Section {
     }
 
     /// Shows the cut.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, _actions: &mut Vec<Action>) {
+    pub fn show(
+        &mut self,
+        ui: &mut egui::Ui,
+        document: &Document,
+        arrangement: DraftLayout,
+        _actions: &mut Vec<Action>,
+    ) {
+        let ends = i64::from(document.design().ends());
+        // Ends are counted as the draft counts them; each way is its own inverse.
+        let from_right = !self.along_pick && arrangement == DraftLayout::Us;
+        let counted = |thread: i64| {
+            if from_right {
+                ends - thread
+            } else {
+                thread + 1
+            }
+        };
+        let thread_of = |number: i64| {
+            if from_right {
+                ends - number
+            } else {
+                number - 1
+            }
+        };
         let quiet = Palette::current(ui).quiet;
         ui.horizontal_wrapped(|ui| {
             ui.radio_value(&mut self.along_pick, true, "Along a pick");
@@ -54,14 +78,14 @@ impl Section {
             } else {
                 &mut self.at.0
             };
-            let mut number = *thread + 1;
+            let mut number = counted(*thread);
             let label = ui.label("number");
             if ui
                 .add(egui::DragValue::new(&mut number))
                 .labelled_by(label.id)
                 .changed()
             {
-                *thread = number - 1;
+                *thread = thread_of(number);
                 self.follows = false;
             }
             ui.checkbox(&mut self.follows, "follow the pointer");
@@ -86,7 +110,13 @@ impl Section {
             self.known = Some((question, cut));
         }
         match &self.known {
-            Some((_, Some(cut))) => draw(ui, document, cut, self.along_pick, self.at),
+            Some((_, Some(cut))) => {
+                let thread = match self.along_pick {
+                    true => self.at.1,
+                    false => self.at.0,
+                };
+                draw(ui, document, cut, self.along_pick, counted(thread));
+            }
             _ => {
                 ui.label(RichText::new("There is no cloth here.").color(quiet));
             }
@@ -94,13 +124,7 @@ impl Section {
     }
 }
 
-fn draw(
-    ui: &mut egui::Ui,
-    document: &Document,
-    cut: &CrossSection,
-    along_pick: bool,
-    crossing: (i64, i64),
-) {
+fn draw(ui: &mut egui::Ui, document: &Document, cut: &CrossSection, along_pick: bool, number: i64) {
     let palette = Palette::current(ui);
     let width = ui.available_width();
     let scale = width / cut.length_mm.max(1e-3);
@@ -113,12 +137,8 @@ fn draw(
         });
     let height = (high - low) * scale + 2.0 * tokens::PAD;
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
-    let (what, number) = if along_pick {
-        ("pick", crossing.1)
-    } else {
-        ("end", crossing.0)
-    };
-    let spoken = format!("Cut along {what} {}: the face is above", number + 1);
+    let what = if along_pick { "pick" } else { "end" };
+    let spoken = format!("Cut along {what} {number}: the face is above");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, tokens::SURROUND);

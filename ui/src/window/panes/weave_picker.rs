@@ -17,6 +17,8 @@ const SIDE: f32 = 12.0 * tokens::GRID;
 #[derive(Default)]
 pub struct WeavePicker {
     search: String,
+    /// The field had the keyboard once.
+    focused: bool,
     thumbs: BTreeMap<&'static str, TextureHandle>,
 }
 
@@ -44,7 +46,11 @@ impl WeavePicker {
             .show(ctx, |ui| {
                 let label = ui.label("Find a weave");
                 let field = TextEdit::singleline(&mut self.search).hint_text("satin, honeycomb…");
-                ui.add(field).labelled_by(label.id);
+                let field = ui.add(field).labelled_by(label.id);
+                if !self.focused {
+                    field.request_focus();
+                    self.focused = true;
+                }
                 let wanted = self.search.to_lowercase();
                 let fits = |weave: &&LibraryWeave| {
                     let also = weave

@@ -4,6 +4,7 @@
 mod files;
 mod hard;
 mod keys;
+mod flow;
 mod large;
 mod opening;
 mod painting;

@@ -266,6 +266,27 @@ fn the_palette_finds_and_does() {
 }
 
 #[test]
+fn letters_and_enter_in_one_frame_are_the_command_they_find() {
+    let mut window = still_window("oxford");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.run_steps(3);
+    let before = up(&window, 0, 0);
+    // Events of the harness have a frame each; these share one.
+    window.input_mut().events.extend([
+        Event::Text("invert".to_owned()),
+        Event::Key {
+            key: Key::Enter,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        },
+    ]);
+    window.run_steps(3);
+    assert_ne!(up(&window, 0, 0), before);
+}
+
+#[test]
 fn one_key_moves_the_keyboard_between_draft_and_cloth() {
     let mut window = still_window("oxford");
     let ctx = window.ctx.clone();

@@ -18,6 +18,9 @@ const SIGHT_WORTH: f64 = 0.25;
 /// A picture in which an edit was put in by first sight counts at most as so many paths a
 /// pixel, so that the edit is soon traced as well.
 const EDITED_WORTH: f64 = 4.0;
+/// First sight shows each crossing: where the whole picture could, one of a coarser level
+/// is better only with so many pixels a crossing.
+const RESOLVED: f32 = 4.0;
 /// Beyond this share of changed pixels the whole picture counts as first sight.
 const MOSTLY_CHANGED: f64 = 0.2;
 
@@ -166,7 +169,8 @@ impl Drawing<'_> {
             let paths = f64::from(pass.spp) * f64::from(pass.width) * f64::from(pass.height);
             let before = screen.as_ref().map_or(0.0, |screen| screen.paths);
             // A finer picture is shown once it is no noisier than the coarser one.
-            if 2.0 * paths >= before && self.job.check().is_ok() {
+            let better = 2.0 * paths >= before && self.resolves(level);
+            if better && self.job.check().is_ok() {
                 self.show(pass, level == 0, full);
                 if let Some(screen) = screen {
                     screen.paths = paths;
@@ -175,6 +179,18 @@ impl Drawing<'_> {
             }
         })?;
         Ok(pass_seconds)
+    }
+
+    /// Whether a level shows crossings, where they can be told apart at all.
+    fn resolves(&self, level: u32) -> bool {
+        let still = &self.request.still;
+        let Some(width_mm) = still.width_mm else {
+            return true;
+        };
+        let sett = self.request.design.sett();
+        let pitch = (sett.ends.mean_pitch_mm()).min(sett.picks.mean_pitch_mm());
+        let crossing = pitch / width_mm.max(1e-6) * still.width as f32;
+        crossing < RESOLVED || crossing / (1u64 << level.min(32)) as f32 >= RESOLVED
     }
 
     fn show(&self, pass: &Pass<'_>, full_size: bool, full_cloth: bool) {
