@@ -106,7 +106,8 @@ impl App {
             app.warn(wrong, "Nothing of your designs is lost.");
         }
         if let Some(opened) = opened {
-            app.take_design(&opened);
+            let session = Session::of(&opened);
+            app.take_design(&opened, session);
         }
         Ok(app)
     }

@@ -10,7 +10,7 @@ use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::pdf::{self, PdfOptions};
 use pickglass::formats::{self, SaveOptions, atomic};
 
-use super::session;
+use super::session::{self, Session};
 use super::task::{Outcome, Task};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
@@ -28,14 +28,13 @@ const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
 
 /// What came of a file.
 pub enum FileEvent {
-    /// A design was read, from a file or of the program's own.
-    Opened(Box<Opened>),
+    /// A design was read, from a file or of the program's own, and woven.
+    Opened(Box<Opened>, Box<Session>),
     /// Unsaved work of an earlier run, the copy it is from, and its file if it has one.
     Recovered {
-        design: Box<Design>,
+        session: Box<Session>,
         lost: Option<String>,
         copy: PathBuf,
-        original: Option<PathBuf>,
     },
     /// This state of the document is in its file.
     Saved { path: PathBuf, state: u64 },
@@ -236,10 +235,9 @@ impl Files {
         } = found.clone();
         let work = move || match recovery::load(&path) {
             Ok(recovered) => FileEvent::Recovered {
-                design: Box::new(recovered.design),
+                session: Box::new(Session::unsaved(recovered.design, original)),
                 lost: recovered.lost,
                 copy: path,
-                original,
             },
             Err(error) => FileEvent::OpenFailed(error.to_string()),
         };
@@ -268,7 +266,10 @@ impl Files {
         work: impl FnOnce() -> anyhow::Result<Opened> + Send + 'static,
     ) {
         let work = move || match work() {
-            Ok(opened) => FileEvent::Opened(Box::new(opened)),
+            Ok(opened) => {
+                let session = Box::new(Session::of(&opened));
+                FileEvent::Opened(Box::new(opened), session)
+            }
             Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
         };
         // A newer choice replaces one that is still being read.

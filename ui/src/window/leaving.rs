@@ -16,7 +16,7 @@ use crate::opened::Opened;
 
 impl App {
     /// Opens a design.
-    pub(super) fn take_design(&mut self, opened: &Opened) {
+    pub(super) fn take_design(&mut self, opened: &Opened, session: Session) {
         for warning in &opened.warnings {
             self.warn(warning.clone(), "The design was opened.");
         }
@@ -24,7 +24,7 @@ impl App {
             self.settings.opened(path);
             self.write_settings();
         }
-        self.show_session(Some(Session::of(opened)));
+        self.show_session(Some(session));
     }
 
     /// Shows another document, or the start page; the copy of what was open before is not
@@ -98,14 +98,13 @@ impl App {
 
     pub(super) fn file_event(&mut self, ctx: &egui::Context, event: FileEvent) {
         match event {
-            FileEvent::Opened(opened) => self.take_design(&opened),
+            FileEvent::Opened(opened, session) => self.take_design(&opened, *session),
             FileEvent::Recovered {
-                design,
+                session,
                 lost,
                 copy,
-                original,
             } => {
-                self.show_session(Some(Session::unsaved(*design, original)));
+                self.show_session(Some(*session));
                 self.autosave.reopened(copy);
                 match lost {
                     Some(lost) => self.warn(lost, "Everything before that was recovered."),

@@ -219,10 +219,11 @@ impl Form {
         let job = Job::new();
         let (asked, work_job) = (self.wanted.clone(), job.clone());
         let work = move || {
+            // Of a very large design only the region is made into cloth.
+            let request = StillRequest::default().over(&design, &wanted.region());
             let cloth = match cloth {
-                Some(cloth) => cloth,
-                None => {
-                    let request = StillRequest::default();
+                Some(cloth) if cloth.covers(&request) => cloth,
+                _ => {
                     let store = ExemplarStore::user();
                     let prepared = still::prepare(&design, &request, &store, &work_job);
                     Arc::new(prepared.map_err(|error| error.to_string())?)
