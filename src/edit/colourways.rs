@@ -100,12 +100,7 @@ fn check_name(work: &Work, name: &str) -> Result<(), EditError> {
 /// Its yarns become the design's own; those the design had take its place in the list.
 pub(super) fn make_current(work: &mut Work, colourway: usize) -> Result<(), EditError> {
     let mut colourways = listed(work, colourway)?;
-    if work.design.colourway.trim().is_empty() {
-        let names = std::iter::once("original".to_owned())
-            .chain((2..).map(|number| format!("original {number}")));
-        let free = |name: &String| check_name(work, name).is_ok();
-        work.design.colourway = names.into_iter().find(free).unwrap_or_default();
-    }
+    work.design.colourway = work.design.own_colourway();
     let chosen = colourways[colourway].clone();
     let kept = Colourway {
         name: std::mem::replace(&mut work.design.colourway, chosen.name),

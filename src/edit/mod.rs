@@ -41,7 +41,7 @@ pub use edits::{Direction, Edit, Rows};
 pub use error::EditError;
 pub use history::{Entry, HISTORY_BYTES};
 pub use selection::{Clip, Picked, moved, picked};
-pub use symmetry::{Point, Span, Surface, Symmetry};
+pub use symmetry::{MOST_COPIES, Point, Span, Surface, Symmetry};
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]

@@ -93,6 +93,16 @@ pub enum Command {
     Repeat2,
     SymmetryAcross,
     SymmetryAlong,
+    SymmetrySteps,
+    Reference,
+    ReferenceShown,
+    ReferenceFit,
+    NextColourway,
+    PreviousColourway,
+    /// The colourway of this place by name, from 1.
+    Colourway(u8),
+    ContactSheet,
+    SideBySide,
     DeriveDraft,
     BecomeJacquard,
     Arrange(DraftLayout),
@@ -122,6 +132,7 @@ pub enum Menu {
     File,
     Edit,
     Weave,
+    Colours,
     Tools,
     View,
     Help,
@@ -129,10 +140,11 @@ pub enum Menu {
 
 impl Menu {
     /// All menus, from the left.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::File,
         Self::Edit,
         Self::Weave,
+        Self::Colours,
         Self::Tools,
         Self::View,
         Self::Help,
@@ -144,6 +156,7 @@ impl Menu {
             Self::File => "File",
             Self::Edit => "Edit",
             Self::Weave => "Weave",
+            Self::Colours => "Colours",
             Self::Tools => "Tools",
             Self::View => "View",
             Self::Help => "Help",
@@ -258,6 +271,20 @@ pub const TABLE: &[Row] = &[
     row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below, ends counted from the left", &[]),
     row(Command::Arrange(DraftLayout::Jacquard), Menu::Weave, "Drawdown alone", "Neither threading nor treadling", &[]),
 
+    row(Command::NextColourway, Menu::Colours, "Next colourway", "Weave in the next set of yarns, by name", &[plain(Key::Period)]),
+    row(Command::PreviousColourway, Menu::Colours, "Previous colourway", "Weave in the set of yarns before, by name", &[plain(Key::Comma)]),
+    apart(row(Command::Colourway(1), Menu::Colours, "Colourway 1", "The first by name", &[alt(Key::Num1)])),
+    row(Command::Colourway(2), Menu::Colours, "Colourway 2", "The second by name", &[alt(Key::Num2)]),
+    row(Command::Colourway(3), Menu::Colours, "Colourway 3", "The third by name", &[alt(Key::Num3)]),
+    row(Command::Colourway(4), Menu::Colours, "Colourway 4", "The fourth by name", &[alt(Key::Num4)]),
+    row(Command::Colourway(5), Menu::Colours, "Colourway 5", "The fifth by name", &[alt(Key::Num5)]),
+    row(Command::Colourway(6), Menu::Colours, "Colourway 6", "The sixth by name", &[alt(Key::Num6)]),
+    row(Command::Colourway(7), Menu::Colours, "Colourway 7", "The seventh by name", &[alt(Key::Num7)]),
+    row(Command::Colourway(8), Menu::Colours, "Colourway 8", "The eighth by name", &[alt(Key::Num8)]),
+    row(Command::Colourway(9), Menu::Colours, "Colourway 9", "The ninth by name", &[alt(Key::Num9)]),
+    apart(row(Command::ContactSheet, Menu::Colours, "Contact sheet", "All colourways of the cloth at once", &[plain(Key::K)])),
+    row(Command::SideBySide, Menu::Colours, "Two side by side", "The colourway in use beside another", &[shift(Key::K)]),
+
     row(Command::Use(Tool::Pencil), Menu::Tools, "Pencil", "Paint crossings; the right button paints the other value", &[plain(Key::P)]),
     row(Command::Use(Tool::Line), Menu::Tools, "Line", "A straight line of crossings", &[plain(Key::L)]),
     row(Command::Use(Tool::Rectangle), Menu::Tools, "Rectangle", "A filled rectangle; Shift draws the outline", &[plain(Key::R)]),
@@ -270,6 +297,10 @@ pub const TABLE: &[Row] = &[
     apart(row(Command::SwapColours, Menu::Tools, "Exchange the paint", "Exchange what the first and the second button paint", &[plain(Key::X)])),
     row(Command::SymmetryAcross, Menu::Tools, "Paint mirrored left and right", "What is painted left is painted right as well", &[]),
     row(Command::SymmetryAlong, Menu::Tools, "Paint mirrored top and bottom", "What is painted above is painted below as well", &[]),
+    row(Command::SymmetrySteps, Menu::Tools, "Paint in steps", "What is painted is painted again every so many ends and picks", &[]),
+    apart(row(Command::Reference, Menu::Tools, "Reference image…", "A picture over the draft to draw by; it is no part of the weave", &[])),
+    row(Command::ReferenceShown, Menu::Tools, "Show the reference", "Show or hide the picture that is drawn by", &[plain(Key::V)]),
+    row(Command::ReferenceFit, Menu::Tools, "How the reference lies…", "How strongly it shows, and whether it is stretched", &[]),
 
     row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face, to true scale", &[ctrl(Key::Num1)]),
     row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", &[ctrl(Key::Num2)]),

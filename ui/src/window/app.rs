@@ -142,6 +142,14 @@ impl App {
             ghosts: self.draft.show.ghosts,
             navigator: self.draft.show.navigator,
             symmetry: self.draft.symmetry,
+            steps: self.draft.steps.on,
+            reference: self
+                .draft
+                .reference
+                .as_ref()
+                .map(|reference| reference.shown),
+            colourways: document.map_or(0, |document| document.design().colourways().len()),
+            sheet: self.preview.sheet_kind(),
             recent: &self.settings.recent,
         }
     }
@@ -236,6 +244,7 @@ impl App {
 
     /// What will be kept for the next start.
     fn keep_settings(&mut self, ctx: &egui::Context) {
+        self.remember_reference();
         let show = &self.draft.show;
         self.settings.light = ctx.theme() == egui::Theme::Light;
         self.settings.layout = Some(self.layout.kept());

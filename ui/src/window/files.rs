@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{Id, Key, Modal, RichText};
-use pickglass::design::Design;
+use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::pdf::{self, PdfOptions};
-use pickglass::formats::{self, SaveOptions, atomic};
+use pickglass::formats::{self, SaveOptions, atomic, photo};
 
 use super::session::{self, Session};
 use super::task::{Outcome, Task};
@@ -23,6 +23,8 @@ const OPENED: [&str; 15] = [
     "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg",
     "jpeg", "webp",
 ];
+/// Endings of pictures.
+const PICTURES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff"];
 /// Endings a draft is exported with.
 const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
 
@@ -35,6 +37,11 @@ pub enum FileEvent {
         session: Box<Session>,
         lost: Option<String>,
         copy: PathBuf,
+    },
+    /// A picture to draw by.
+    Reference {
+        path: PathBuf,
+        source: Box<SourceImage>,
     },
     /// This state of the document is in its file.
     Saved { path: PathBuf, state: u64 },
@@ -53,15 +60,22 @@ enum Purpose {
     Save,
     Export,
     Print,
+    Reference,
 }
 
 impl Purpose {
+    /// Whether the file is read, not written.
+    fn reads(self) -> bool {
+        matches!(self, Self::Open | Self::Reference)
+    }
+
     fn title(self) -> &'static str {
         match self {
             Self::Open => "Open by path",
             Self::Save => "Save as",
             Self::Export => "Export the draft",
             Self::Print => "Print to PDF",
+            Self::Reference => "Reference image",
         }
     }
 
@@ -71,6 +85,7 @@ impl Purpose {
             Self::Save => "Path of a .ron file",
             Self::Export => "Path that ends in .wif, .png, .bmp, .tif or .gif",
             Self::Print => "Path of a .pdf file",
+            Self::Reference => "Path of a photograph or a drawing",
         }
     }
 
@@ -80,6 +95,7 @@ impl Purpose {
             Self::Save => "Save",
             Self::Export => "Export",
             Self::Print => "Print",
+            Self::Reference => "Show it",
         }
     }
 
@@ -107,6 +123,11 @@ impl Purpose {
                 .add_filter("PDF", &["pdf"])
                 .set_file_name(proposed)
                 .save_file(),
+            Self::Reference => dialog
+                .set_title("A picture to draw by")
+                .add_filter("Pictures", &PICTURES)
+                .add_filter("All files", &["*"])
+                .pick_file(),
         }
     }
 }
@@ -167,6 +188,11 @@ impl Files {
         self.ask_for(ctx, Purpose::Print, proposed);
     }
 
+    /// Asks for a picture to draw by.
+    pub fn ask_reference(&mut self, ctx: &egui::Context) {
+        self.ask_for(ctx, Purpose::Reference, String::new());
+    }
+
     fn ask_for(&mut self, ctx: &egui::Context, purpose: Purpose, proposed: String) {
         if self.dialog.is_some() {
             return;
@@ -223,6 +249,21 @@ impl Files {
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
         self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
+    }
+
+    /// Reads a picture to draw by.
+    pub fn open_reference(&mut self, ctx: &egui::Context, path: PathBuf) {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
+        let work = move || match photo::load(&path) {
+            Ok(photo) => FileEvent::Reference {
+                path,
+                source: Box::new(photo.source),
+            },
+            Err(error) => FileEvent::OpenFailed(error.to_string()),
+        };
+        if let Ok(task) = Task::start(ctx, "reference", work) {
+            self.reading = Some((name.to_string_lossy().into_owned(), task));
+        }
     }
 
     /// Opens unsaved work of an earlier run.
@@ -369,6 +410,7 @@ impl Files {
             Purpose::Save => self.chosen = Some((purpose, with_ending(path, "ron"))),
             Purpose::Export => self.chosen = Some((purpose, with_ending(path, "wif"))),
             Purpose::Print => self.chosen = Some((purpose, with_ending(path, "pdf"))),
+            Purpose::Reference => self.open_reference(ctx, path),
         }
         ctx.request_repaint();
     }
@@ -386,7 +428,7 @@ impl Files {
         if done && !path.as_os_str().is_empty() {
             let purpose = typed.purpose;
             // Ask once before an existing file is written over.
-            if purpose != Purpose::Open && path.exists() && typed.over.as_deref() != Some(&*path) {
+            if !purpose.reads() && path.exists() && typed.over.as_deref() != Some(&*path) {
                 typed.over = Some(path);
                 return;
             }

@@ -1,14 +1,19 @@
 //! What is open: designs that come and go, what the threads finished, and the questions in
 //! between.
 
+use std::path::PathBuf;
+
 use egui::ViewportCommand;
+use pickglass::design::SourceImage;
 use pickglass::edit::Clip;
 
 use super::app::App;
 use super::asking::{Answer, Next};
+use super::draft::reference::Reference;
 use super::export::Exported;
 use super::files::{FileEvent, Writing};
 use super::session::Session;
+use super::settings::KeptReference;
 use super::toasts::Grade;
 use super::volume;
 use crate::command_table::Tool;
@@ -31,8 +36,16 @@ impl App {
     /// needed any more.
     pub(super) fn show_session(&mut self, session: Option<Session>) {
         self.autosave.leave();
+        self.remember_reference();
         self.session = session;
         self.draft.forget();
+        let path = self.session.as_ref().and_then(|s| s.path.as_deref());
+        if let Some(kept) = self.settings.reference_of(path)
+            && kept.image.exists()
+        {
+            let image = kept.image.clone();
+            self.files.open_reference(&self.ctx, image);
+        }
         self.preview.forget();
         self.asking.derive_always = false;
     }
@@ -96,6 +109,40 @@ impl App {
         }
     }
 
+    /// Shows a picture to draw by, as it lay when it was seen last.
+    fn take_reference(&mut self, ctx: &egui::Context, path: PathBuf, source: &SourceImage) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let before = self.draft.reference.take();
+        let mut reference = Reference::new(ctx, path, source);
+        let kept = self.settings.reference_of(session.path.as_deref());
+        if let Some(kept) = kept.filter(|kept| kept.image == reference.path) {
+            reference.lie(kept.opacity, kept.stretched);
+            reference.window_open = false;
+        } else if let Some(before) = before {
+            reference.lie(before.opacity, before.stretched);
+        }
+        self.draft.reference = Some(reference);
+    }
+
+    /// Remembers by which picture the open design is drawn.
+    pub(super) fn remember_reference(&mut self) {
+        let path = self.session.as_ref().and_then(|s| s.path.as_deref());
+        if let Some(design) = path {
+            let reference = self.draft.reference.as_ref();
+            self.settings.draws_by(
+                design,
+                reference.map(|reference| KeptReference {
+                    design: design.to_owned(),
+                    image: reference.path.clone(),
+                    opacity: reference.opacity,
+                    stretched: reference.stretched,
+                }),
+            );
+        }
+    }
+
     pub(super) fn file_event(&mut self, ctx: &egui::Context, event: FileEvent) {
         match event {
             FileEvent::Opened(opened, session) => self.take_design(&opened, *session),
@@ -110,6 +157,9 @@ impl App {
                     Some(lost) => self.warn(lost, "Everything before that was recovered."),
                     None => self.say(Grade::Done, "Recovered.", "Save it to keep it."),
                 }
+            }
+            FileEvent::Reference { path, source } => {
+                self.take_reference(ctx, path, &source);
             }
             FileEvent::OpenFailed(error) => {
                 let kept = match &self.session {

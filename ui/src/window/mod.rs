@@ -27,6 +27,7 @@ mod menu;
 mod obey;
 mod palette;
 mod panes;
+mod picture;
 mod preview;
 mod session;
 mod settings;
@@ -35,6 +36,7 @@ mod status;
 mod task;
 #[cfg(test)]
 mod tests;
+mod thumbs;
 mod toasts;
 mod tools;
 mod view;

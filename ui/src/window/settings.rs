@@ -30,6 +30,17 @@ pub struct Settings {
     pub ghosts: bool,
     pub long_floats: bool,
     pub navigator: bool,
+    /// Newest first.
+    pub references: Vec<KeptReference>,
+}
+
+/// By which picture a design is drawn: only its path is kept, beside that of the design.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KeptReference {
+    pub design: PathBuf,
+    pub image: PathBuf,
+    pub opacity: f32,
+    pub stretched: bool,
 }
 
 impl Default for Settings {
@@ -43,6 +54,7 @@ impl Default for Settings {
             ghosts: true,
             long_floats: false,
             navigator: false,
+            references: Vec::new(),
         }
     }
 }
@@ -54,6 +66,21 @@ impl Settings {
         self.recent.retain(|known| *known != path);
         self.recent.insert(0, path);
         self.recent.truncate(MOST_RECENT);
+    }
+
+    /// The picture that the design in a file is drawn by.
+    pub fn reference_of(&self, design: Option<&Path>) -> Option<&KeptReference> {
+        let design = design?;
+        (self.references.iter()).find(|kept| kept.design == design)
+    }
+
+    /// Remembers by which picture the design in a file is drawn, if by any.
+    pub fn draws_by(&mut self, design: &Path, reference: Option<KeptReference>) {
+        self.references.retain(|kept| kept.design != design);
+        if let Some(reference) = reference {
+            self.references.insert(0, reference);
+            self.references.truncate(MOST_RECENT);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 mod colourways;
 mod floats;
 mod history;
-mod later;
+pub mod later;
 mod log;
 mod posterise;
 mod regions;

@@ -15,6 +15,7 @@ use super::regions::RegionList;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::icons;
+use crate::window::picture::shrunk;
 use crate::window::task::{Outcome, Task};
 use crate::window::toasts::Grade;
 
@@ -130,17 +131,7 @@ impl Posterise {
 
     /// Takes a picture to be posterised.
     pub fn take(&mut self, ctx: &egui::Context, source: Arc<SourceImage>) {
-        let (width, height) = (source.width() as usize, source.height() as usize);
-        let step = width.max(height).div_ceil(SHOWN).max(1);
-        let size = [(width / step).max(1), (height / step).max(1)];
-        let pixels = (0..size[0] * size[1])
-            .map(|at| {
-                let (x, y) = (at % size[0] * step, at / size[0] * step);
-                let [red, green, blue] = source.pixels()[y * width + x];
-                tokens::yarn_colour(red, green, blue)
-            })
-            .collect();
-        let image = egui::ColorImage::new(size, pixels);
+        let image = shrunk(&source, SHOWN);
         self.picture = Some(Picture {
             source,
             number: self

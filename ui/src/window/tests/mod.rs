@@ -1,6 +1,7 @@
 //! The window without a display: clicks and keys by accessible label, and pictures of it
 //! on a software adapter.
 
+mod colours;
 mod files;
 mod large;
 mod opening;
