@@ -91,6 +91,8 @@ pub enum Command {
     Words,
     CropToSelection,
     Repeat2,
+    RepeatMore,
+    ClearCorrections,
     SymmetryAcross,
     SymmetryAlong,
     SymmetrySteps,
@@ -262,6 +264,8 @@ pub const TABLE: &[Row] = &[
     row(Command::Repeat, Menu::Weave, "Repeat…", "Straight, shifted like bricks, or not at all", &[]),
     row(Command::CropToSelection, Menu::Weave, "Crop to the selection", "Keep the selected crossings alone", &[]),
     row(Command::Repeat2, Menu::Weave, "Repeat 2 × 2", "Four repeats become one, so that they can differ", &[]),
+    row(Command::RepeatMore, Menu::Weave, "Repeat more often…", "As many repeats as you like become one", &[]),
+    row(Command::ClearCorrections, Menu::Weave, "Clear hand corrections", "The weaves of the regions again, where selected or everywhere", &[]),
     apart(row(Command::DeriveDraft, Menu::Weave, "Derive the draft", "Threading, tie-up and treadling on the fewest shafts", &[])),
     row(Command::Loom, Menu::Weave, "Loom…", "Shafts and treadles, lift plan, rising or sinking shed", &[]),
     row(Command::BecomeJacquard, Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])

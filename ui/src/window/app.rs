@@ -11,6 +11,7 @@ use super::crossing;
 use super::draft::DraftPane;
 use super::export::Export;
 use super::files::Files;
+use super::import::Import;
 use super::layout::Layout;
 use super::menu::{self, Choice, Situation};
 use super::palette::CommandPalette;
@@ -43,6 +44,8 @@ pub struct App {
     pub(super) layout: Layout,
     pub(super) start: StartPage,
     pub(super) files: Files,
+    /// What is asked of an image before it is opened.
+    pub(super) import: Option<Import>,
     pub(super) autosave: Autosave,
     pub(super) export: Export,
     pub(super) volume: VolumeExport,
@@ -85,6 +88,7 @@ impl App {
             layout: Layout::from_kept(settings.layout.take()),
             start: StartPage::default(),
             files: Files::default(),
+            import: None,
             autosave: Autosave::new(ctx, options.recovery),
             export: Export::default(),
             volume: VolumeExport::default(),
@@ -332,6 +336,7 @@ impl App {
         hovered_ui(&ctx, pane);
         self.toasts.show(&ctx, pane.right_bottom());
         self.files.show(&ctx);
+        self.import_ui(&ctx);
         self.export.show(&ctx);
         self.volume.show(&ctx);
         self.asking_ui(&ctx);

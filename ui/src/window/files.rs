@@ -1,12 +1,14 @@
 //! Opening and saving: the system's dialog on its own thread, a typed path where there is
 //! none, and reading and writing on a thread as well.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{Id, Key, Modal, RichText};
 use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
+use pickglass::formats::image::Encoding;
 use pickglass::formats::pdf::{self, PdfOptions};
 use pickglass::formats::{self, SaveOptions, atomic, photo};
 
@@ -38,6 +40,8 @@ pub enum FileEvent {
         lost: Option<String>,
         copy: PathBuf,
     },
+    /// An image, of which more is to be asked than it says.
+    Image(PathBuf),
     /// A picture to draw by.
     Reference {
         path: PathBuf,
@@ -248,7 +252,17 @@ impl Files {
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
-        self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
+        let work = move || match is_image(&path) {
+            true => FileEvent::Image(path),
+            false => opened(Opened::file(path)),
+        };
+        self.begin_reading(ctx, &name.to_string_lossy(), work);
+    }
+
+    /// Opens a design that was read already.
+    pub fn open_read(&mut self, ctx: &egui::Context, read: Opened) {
+        let name = read.name().to_owned();
+        self.begin_reading(ctx, &name, move || opened(Ok(read)));
     }
 
     /// Reads a picture to draw by.
@@ -261,9 +275,7 @@ impl Files {
             },
             Err(error) => FileEvent::OpenFailed(error.to_string()),
         };
-        if let Ok(task) = Task::start(ctx, "reference", work) {
-            self.reading = Some((name.to_string_lossy().into_owned(), task));
-        }
+        self.begin_reading(ctx, &name.to_string_lossy(), work);
     }
 
     /// Opens unsaved work of an earlier run.
@@ -282,9 +294,7 @@ impl Files {
             },
             Err(error) => FileEvent::OpenFailed(error.to_string()),
         };
-        if let Ok(task) = Task::start(ctx, "reading", work) {
-            self.reading = Some((name, task));
-        }
+        self.begin_reading(ctx, &name, work);
     }
 
     /// The file that is being read or written, if any, in words.
@@ -306,13 +316,15 @@ impl Files {
         name: &str,
         work: impl FnOnce() -> anyhow::Result<Opened> + Send + 'static,
     ) {
-        let work = move || match work() {
-            Ok(opened) => {
-                let session = Box::new(Session::of(&opened));
-                FileEvent::Opened(Box::new(opened), session)
-            }
-            Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
-        };
+        self.begin_reading(ctx, name, move || opened(work()));
+    }
+
+    fn begin_reading(
+        &mut self,
+        ctx: &egui::Context,
+        name: &str,
+        work: impl FnOnce() -> FileEvent + Send + 'static,
+    ) {
         // A newer choice replaces one that is still being read.
         if let Ok(task) = Task::start(ctx, "reading", work) {
             self.reading = Some((name.to_owned(), task));
@@ -472,6 +484,25 @@ fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &m
         *done |= ui.add_enabled(ready, egui::Button::new(name)).clicked();
         *close |= ui.button("Cancel").clicked();
     });
+}
+
+/// What was opened, woven, or why not.
+fn opened(read: anyhow::Result<Opened>) -> FileEvent {
+    match read {
+        Ok(opened) => {
+            let session = Box::new(Session::of(&opened));
+            FileEvent::Opened(Box::new(opened), session)
+        }
+        Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
+    }
+}
+
+/// Whether a file is an image by its first bytes. One that cannot be read is none: opening
+/// it says why.
+fn is_image(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut head));
+    read.is_ok() && Encoding::of(&head).is_some()
 }
 
 /// Writes a design as pages.

@@ -1,7 +1,7 @@
 //! What is open: designs that come and go, what the threads finished, and the questions in
 //! between.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::ViewportCommand;
 use pickglass::design::SourceImage;
@@ -12,7 +12,9 @@ use super::asking::{Answer, Next};
 use super::draft::reference::Reference;
 use super::export::Exported;
 use super::files::{FileEvent, Writing};
-use super::session::Session;
+use super::import::{self, Import};
+use super::panes::Pane;
+use super::session::{self, Session};
 use super::settings::KeptReference;
 use super::toasts::Grade;
 use super::volume;
@@ -65,6 +67,7 @@ impl App {
                 let text = format!("Wrote {}", path.display());
                 let kept = format!("{} × {}, {} spp", report.width, report.height, report.spp);
                 self.say(Grade::Done, text, kept);
+                self.toasts.made(&path);
             }
             Some(Exported::Cancelled) => {
                 self.say(
@@ -85,6 +88,7 @@ impl App {
         match self.volume.poll() {
             Some(volume::Exported::Written { path, about }) => {
                 self.say(Grade::Done, format!("Wrote {}", path.display()), about);
+                self.toasts.made(&path);
             }
             Some(volume::Exported::Cancelled) => {
                 self.say(
@@ -107,6 +111,30 @@ impl App {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.told_title = title;
         }
+    }
+
+    /// Shows what is asked of an image, and goes on with the answer.
+    pub(super) fn import_ui(&mut self, ctx: &egui::Context) {
+        let answer = self.import.as_mut().and_then(|import| import.show(ctx));
+        match answer {
+            None => return,
+            Some(import::Answer::Open(opened)) => self.files.open_read(ctx, *opened),
+            Some(import::Answer::Posterise(path)) => self.posterise(ctx, &path),
+            Some(import::Answer::Closed) => {}
+        }
+        self.import = None;
+    }
+
+    /// Takes a photograph to be posterised, beside what is open or a new design.
+    fn posterise(&mut self, ctx: &egui::Context, path: &Path) {
+        if self.session.is_none() {
+            match session::blank() {
+                Ok(blank) => self.take_design(&blank, Session::of(&blank)),
+                Err(error) => return self.say(Grade::Error, format!("{error:#}"), ""),
+            }
+        }
+        self.panes.posterise(ctx, path);
+        self.layout.bring(Pane::Posterise);
     }
 
     /// Shows a picture to draw by, as it lay when it was seen last.
@@ -158,6 +186,7 @@ impl App {
                     None => self.say(Grade::Done, "Recovered.", "Save it to keep it."),
                 }
             }
+            FileEvent::Image(path) => self.import = Some(Import::new(path)),
             FileEvent::Reference { path, source } => {
                 self.take_reference(ctx, path, &source);
             }
@@ -186,10 +215,12 @@ impl App {
                     format!("Wrote {}", path.display()),
                     "Nothing was left out.",
                 );
+                self.toasts.made(&path);
             }
             FileEvent::Exported { path, lost } => {
                 let text = format!("Wrote {}, without {}", path.display(), lost.join("; "));
                 self.warn(text, "The design itself is as it was.");
+                self.toasts.made(&path);
             }
             FileEvent::SaveFailed(error) => {
                 self.asking.after_save = None;

@@ -20,6 +20,7 @@ mod export;
 mod files;
 mod forms;
 mod icons;
+mod import;
 mod laid;
 mod layout;
 mod leaving;

@@ -234,7 +234,7 @@ fn woven(
 }
 
 /// As much of the drawdown as fits, in cells of whole pixels; large designs from afar.
-fn swatch_of(design: &Design, drawdown: &WeavePattern) -> ColorImage {
+pub fn swatch_of(design: &Design, drawdown: &WeavePattern) -> ColorImage {
     let pixels = PIXELS as usize;
     let longest = design.ends().max(design.picks()) as usize;
     let cell = (pixels / longest.max(1)).clamp(1, LARGEST_CELL);

@@ -14,7 +14,7 @@ use pickglass::still::{self, PreparedCloth, StillRequest};
 use pickglass::volume::source::VoxelSource;
 
 use super::icons;
-use super::task::{Outcome, Task};
+use super::task::{Outcome, Pace, Task};
 use super::toasts::Grade;
 use crate::tokens::{self, Palette};
 
@@ -166,9 +166,9 @@ impl VolumeExport {
     fn begin(&mut self, ctx: &egui::Context, cloth: Arc<PreparedCloth>, wanted: Wanted) {
         let progress = Arc::new(Mutex::new("preparing".to_owned()));
         let (told, told_ctx) = (Arc::clone(&progress), ctx.clone());
+        let pace = Pace::default();
         let job = Job::new().with_listener(move |stage, fraction| {
-            *told.lock().unwrap_or_else(PoisonError::into_inner) =
-                format!("{stage} {:.0} %", fraction * 100.0);
+            *told.lock().unwrap_or_else(PoisonError::into_inner) = pace.told(stage, fraction);
             told_ctx.request_repaint();
         });
         let work_job = job.clone();

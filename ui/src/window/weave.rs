@@ -109,6 +109,10 @@ impl App {
                 across: 2,
                 along: 2,
             },
+            Command::RepeatMore => return self.asking.fill_in(Form::Tile([2, 2])),
+            Command::ClearCorrections => {
+                Edit::ClearCorrections(selected.unwrap_or_else(|| Cells::all(ends, picks)))
+            }
             Command::DeriveDraft => {
                 if self.draft.show.arrangement == DraftLayout::Jacquard {
                     self.draft.show.arrangement = DraftLayout::Us;

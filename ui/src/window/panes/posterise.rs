@@ -1,7 +1,7 @@
 //! Posterising: the picture beside its map, and what it is made with; live, on a thread of
 //! its own.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{DragValue, RichText, ScrollArea, TextEdit, TextureHandle, TextureOptions};
@@ -91,8 +91,7 @@ impl Posterise {
                 Outcome::Ready(path) => {
                     self.choosing = None;
                     if let Some(path) = path {
-                        self.path = path.display().to_string();
-                        self.read(ctx);
+                        self.read_file(ctx, &path);
                     }
                 }
                 Outcome::Lost => self.choosing = None,
@@ -117,6 +116,12 @@ impl Posterise {
                 self.problem = Some("the picture could not be read: try another".to_owned());
             }
         }
+    }
+
+    /// Reads the picture at a path.
+    pub fn read_file(&mut self, ctx: &egui::Context, path: &Path) {
+        self.path = path.display().to_string();
+        self.read(ctx);
     }
 
     fn read(&mut self, ctx: &egui::Context) {

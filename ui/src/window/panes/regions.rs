@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use egui::RichText;
-use pickglass::design::{Design, Region, RegionYarns, Regions, Srgb, Structure, YarnId};
+use pickglass::design::{Design, Fill, Region, RegionYarns, Regions, Srgb, Structure, YarnId};
 use pickglass::edit::{Document, Edit};
 
 use super::later::Later;
+use super::region_details::RegionDetails;
 use super::swatches;
 use super::weave_picker::{Picked, WeavePicker};
 use crate::tokens::Palette;
@@ -20,6 +21,9 @@ const MOST_YARNS: usize = 64;
 pub struct RegionList {
     picker: Option<(u16, WeavePicker)>,
     areas: Later<u64, Vec<f64>>,
+    /// The region whose details are open.
+    open: Option<u16>,
+    details: RegionDetails,
 }
 
 impl RegionList {
@@ -44,6 +48,16 @@ impl RegionList {
             {
                 actions.push(Action::edit(Edit::SortRegions));
             }
+            let add = ui.button("Add region");
+            let tip = "A region more in plain weave; choose it to paint with";
+            if add.on_hover_text(tip).clicked()
+                && let Ok(fill) = Fill::by_notation("plain")
+            {
+                let name = format!("region {}", count + 1);
+                actions.push(Action::edit(Edit::AddRegion(Box::new(Region::new(
+                    name, fill,
+                )))));
+            }
             let weavable = document.design().weavable();
             let word = if weavable { "weavable" } else { "preview only" };
             ui.label(RichText::new(word).color(Palette::current(ui).quiet));
@@ -51,6 +65,9 @@ impl RegionList {
         for (number, region) in regions.palette().iter().enumerate() {
             let design = document.design();
             self.region_ui(ui, design, (number as u16, count as u16), region, actions);
+            if self.open == Some(number as u16) {
+                self.details.show(ui, regions, number as u16, actions);
+            }
         }
         let Some((number, picker)) = &mut self.picker else {
             return;
@@ -137,11 +154,12 @@ impl RegionList {
                     actions.push(Action::edit(Edit::OrderRegions(order)));
                 }
             }
-            ui.label(
-                RichText::new(&name)
-                    .small()
-                    .color(Palette::current(ui).quiet),
-            );
+            let open = self.open == Some(number);
+            let more = ui.selectable_label(open, &name);
+            let tip = "Where it lies shows in the draft; click for more";
+            if more.on_hover_text(tip).clicked() {
+                self.open = (!open).then_some(number);
+            }
         });
         if ui.rect_contains_pointer(row.response.rect) {
             actions.push(Action::Mark(Mark::Region(number)));
