@@ -14,8 +14,8 @@ use crate::exemplar::{
 };
 use crate::job::Job;
 use crate::synthesis::{
-    Assignment, Catalogue, EdgeFix, NeighbourBits, Placement, Randomisation, SynthesisError,
-    SynthesisSettings, assign,
+    Assignment, Catalogue, EdgeFix, NeighbourBits, Placement, Randomisation, Stretch,
+    SynthesisError, SynthesisSettings, assign, assign_part,
 };
 use crate::yarn::YarnRecipe;
 
@@ -225,22 +225,29 @@ impl ClothVolume {
         settings: &ClothSettings,
         job: &Job,
     ) -> Result<(Assignment, Vec<bool>), ClothError> {
-        Self::assign_weave(&design.weave(), design.lattice(), catalogue, settings, job)
+        let weave = design.weave();
+        Self::assign_weave(&weave, design.lattice(), None, catalogue, settings, job)
     }
 
-    /// As [`ClothVolume::assign`] for a drawdown that is known already.
+    /// As [`ClothVolume::assign`] for a drawdown that is known already; with `within`, only
+    /// the columns that lie there.
     ///
     /// # Errors
-    /// When the lattice is not usable or the job is cancelled.
+    /// When the lattice is not usable, there are too many crossings, or the job is
+    /// cancelled.
     pub fn assign_weave(
         weave: &WeavePattern,
         lattice: Lattice,
+        within: Option<&Stretch>,
         catalogue: &Catalogue,
         settings: &ClothSettings,
         job: &Job,
     ) -> Result<(Assignment, Vec<bool>), ClothError> {
         let SynthesisSettings { method, seed, .. } = settings.synthesis;
-        let assignment = assign(weave, lattice, catalogue, method, seed, job)?;
+        let assignment = match within {
+            Some(stretch) => assign_part(weave, lattice, catalogue, (method, seed), stretch, job)?,
+            None => assign(weave, lattice, catalogue, method, seed, job)?,
+        };
         let mut blocks = vec![false; catalogue.blocks()];
         for end in 0..assignment.ends() {
             for &block in assignment.column(end) {

@@ -12,6 +12,7 @@ use super::colour;
 use crate::design::{Design, WeavePattern};
 use crate::exemplar::ExemplarSet;
 use crate::job::Job;
+use crate::synthesis::Stretch;
 
 /// Beyond this many changed crossings all blocks are assigned anew.
 const MOST_CELLS: usize = 1 << 18;
@@ -19,6 +20,7 @@ const MOST_CELLS: usize = 1 << 18;
 impl ClothVolume {
     /// The cloth of the edited `design`, whose drawdown is `weave`; the cloth as it is
     /// shows the drawdown `before`. It may lack exemplars, see [`ClothVolume::unbuilt`].
+    /// With `within`, it has the columns that lie there and no others.
     ///
     /// `None` where other exemplars are needed: for yarns of other families or sizes,
     /// another spacing or another repeat.
@@ -30,6 +32,7 @@ impl ClothVolume {
         before: &WeavePattern,
         design: &Design,
         weave: &WeavePattern,
+        within: Option<&Stretch>,
         job: &Job,
     ) -> Result<Option<Self>, ClothError> {
         let classes = YarnClasses::new(design);
@@ -48,8 +51,11 @@ impl ClothVolume {
             None => {
                 let (catalogue, settings) = (&self.catalogue, &self.settings);
                 (cloth.assignment, _) =
-                    Self::assign_weave(weave, self.lattice, catalogue, settings, job)?;
+                    Self::assign_weave(weave, self.lattice, within, catalogue, settings, job)?;
             }
+        }
+        if let Some(stretch) = within {
+            (cloth.assignment).look_at(weave, &self.catalogue, stretch, job)?;
         }
         cloth.classes = classes;
         cloth.maps = design.maps().clone();

@@ -3,6 +3,7 @@
 //! A colourway replaces every yarn of the design, by number; weave, orders, sett and repeat
 //! stay. Where the yarns keep family and size the cloth is only recoloured, never made anew.
 
+use super::document::Design;
 use super::yarn::Yarn;
 
 /// The most colourways a design can have.
@@ -115,5 +116,87 @@ pub(super) fn unknown(name: &str, design: &str, colourways: &[Colourway]) -> Col
             [] => "its own yarns only".to_owned(),
             names => names.join(", "),
         },
+    }
+}
+
+impl Design {
+    /// What the design's own yarns are called among the colourways: their name, or
+    /// "original" where nobody named them.
+    pub fn own_colourway(&self) -> String {
+        if !self.colourway.trim().is_empty() {
+            return self.colourway.clone();
+        }
+        let names = std::iter::once("original".to_owned())
+            .chain((2..).map(|number| format!("original {number}")));
+        let taken = |name: &String| (self.colourways().iter()).any(|c| same_name(&c.name, name));
+        names
+            .into_iter()
+            .find(|name| !taken(name))
+            .unwrap_or_default()
+    }
+
+    /// The colourways by name, the design's own yarns among them: name and place in
+    /// [`Design::colourways`], `None` for its own. Numbers in names count as numbers. The
+    /// order stays when another colourway comes into use.
+    pub fn colourway_order(&self) -> Vec<(String, Option<usize>)> {
+        let listed = self.colourways().iter().enumerate();
+        let mut order: Vec<_> = std::iter::once((self.own_colourway(), None))
+            .chain(listed.map(|(place, colourway)| (colourway.name.clone(), Some(place))))
+            .collect();
+        order.sort_by_cached_key(|(name, _)| by_number(name));
+        order
+    }
+}
+
+/// A name cut into words and numbers, so that 10 comes after 9.
+fn by_number(name: &str) -> Vec<(u64, String)> {
+    let mut parts: Vec<(u64, String)> = vec![(0, String::new())];
+    let mut counting = false;
+    for letter in name.trim().to_lowercase().chars() {
+        let digit = letter.to_digit(10);
+        if digit.is_some() && !counting {
+            parts.push((0, String::new()));
+        }
+        if let Some((number, word)) = parts.last_mut() {
+            match digit {
+                Some(digit) => *number = number.saturating_mul(10).saturating_add(digit.into()),
+                None => word.push(letter),
+            }
+        }
+        counting = digit.is_some();
+    }
+    parts
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
+mod tests {
+    use super::*;
+    use crate::design::{Family, Srgb, Structure, WeavePattern, YarnId, YarnMaps, usual_sett};
+
+    #[test]
+    fn the_order_is_by_name_and_counts() {
+        let yarn = Yarn::new("y", Family::Cotton, Srgb(1, 2, 3));
+        let yarns = vec![yarn.clone(), yarn.clone()];
+        let maps = YarnMaps::plain(YarnId(0), YarnId(1));
+        let sett = usual_sett(&yarns, &maps);
+        let structure = Structure::Pattern(WeavePattern::new(4, 4));
+        let mut design = Design::new("d", structure, yarns.clone(), maps, sett).unwrap();
+        let names = |design: &Design| -> Vec<String> {
+            let order = design.colourway_order();
+            order.into_iter().map(|(name, _)| name).collect()
+        };
+        assert_eq!(names(&design), ["original"]);
+        let list = ["set 10", "set 9", "Original", "ash"].map(|name| Colourway {
+            name: name.to_owned(),
+            yarns: yarns.clone(),
+        });
+        design = design.with_colourways(list.to_vec()).unwrap();
+        let expected = ["ash", "Original", "original 2", "set 9", "set 10"];
+        assert_eq!(names(&design), expected);
+        assert_eq!(design.colourway_order()[2].1, None);
+        assert_eq!(design.colourway_order()[3].1, Some(1));
+        design.colourway = "zinc".to_owned();
+        assert_eq!(names(&design)[4], "zinc");
     }
 }

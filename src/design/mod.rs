@@ -63,7 +63,7 @@ pub use library::{ColourOrders, LibraryWeave, library};
 pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};
-pub use reach::{ClothBox, FaceFloat, float_through, long_floats_in};
+pub use reach::{ClothBox, FaceFloat, float_through, long_floats_in, longest_floats};
 pub use sett::{Density, MAX_PITCH_MM, MIN_PITCH_MM, Positions, Sett};
 pub use source::{MAX_SOURCE_PIXELS, SourceError, SourceImage};
 pub use structure::{

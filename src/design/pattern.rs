@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use super::tiles::{TILE, Tiles};
 
-/// The most crossings a pattern, map or drawdown may have (2²⁸, 32 MiB of bits): eight
-/// times the largest loom file seen (5120 × 6300).
-pub const MAX_CROSSINGS: u64 = 1 << 28;
+/// The most crossings a pattern, map or drawdown may have (2²⁹, 64 MiB of bits): sixteen
+/// times the largest loom file seen (5120 × 6300), and a panel of 16 000 × 20 000 with room
+/// around it. A crossing's number, and four times that, fit into 32 bits.
+pub const MAX_CROSSINGS: u64 = 1 << 29;
 
 /// A tile of 64×64 crossings: one word a pick, bit = end.
 type Tile = [u64; TILE as usize];
@@ -291,12 +292,34 @@ impl WeavePattern {
     /// The straight repeat of this pattern cut to `ends` × `picks`, its own crossing
     /// (0, 0) at `origin`.
     pub fn repeated(&self, ends: u32, picks: u32, origin: (i32, i32)) -> Self {
-        Self::from_fn(ends, picks, |end, pick| {
-            self.get_wrapped(
-                i64::from(end) - i64::from(origin.0),
-                i64::from(pick) - i64::from(origin.1),
-            )
-        })
+        let mut result = Self::new(ends, picks);
+        for pick in 0..result.picks {
+            // Picks come again after one repeat.
+            let earlier = pick.checked_sub(self.picks);
+            let row = i64::from(pick) - i64::from(origin.1);
+            for word in 0..result.words_per_pick() {
+                let bits = match earlier {
+                    Some(earlier) => result.pick_word(word, earlier),
+                    None => self.word_wrapped(
+                        i64::from(word * TILE) - i64::from(origin.0),
+                        row.rem_euclid(i64::from(self.picks)) as u32,
+                    ),
+                };
+                result.set_pick_word(word, pick, bits);
+            }
+        }
+        result
+    }
+
+    /// 64 crossings of the straight repeat along a pick, from end `first` on.
+    fn word_wrapped(&self, first: i64, pick: u32) -> u64 {
+        let mut end = first.rem_euclid(i64::from(self.ends)) as u32;
+        let mut bits = 0;
+        for place in 0..TILE {
+            bits |= u64::from(self.get(end, pick)) << place;
+            end = if end + 1 == self.ends { 0 } else { end + 1 };
+        }
+        bits
     }
 
     /// The pattern seen in a mirror (left and right exchanged): Z twill becomes S.

@@ -6,6 +6,7 @@
 
 use super::lattice::Lattice;
 use super::pattern::WeavePattern;
+use crate::job::{Cancelled, Job};
 
 /// A float on the face: where it begins and how many threads it passes over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,7 +77,59 @@ pub fn long_floats_in(
     weft_limit: u32,
 ) -> Vec<FaceFloat> {
     let mut found = Vec::new();
+    let limits = [warp_limit, weft_limit];
+    let put = |float| found.push(float);
+    // Nobody can cancel a job that nobody else has.
+    let _ = each_long_float(drawdown, lattice, window, limits, &Job::new(), put);
+    found
+}
+
+/// The longest floats of a whole design that pass over more threads than allowed (ends
+/// over picks, picks over ends), at most `most` of them with the longest first, and how
+/// many there are. However many that is, no more than `2 * most` are in memory.
+///
+/// # Errors
+/// When the job is cancelled.
+pub fn longest_floats(
+    drawdown: &WeavePattern,
+    lattice: Lattice,
+    limits: [u32; 2],
+    most: usize,
+    job: &Job,
+) -> Result<(Vec<FaceFloat>, u64), Cancelled> {
+    let window = ClothBox {
+        end: 0,
+        pick: 0,
+        ends: drawdown.ends(),
+        picks: drawdown.picks(),
+    };
+    let shorten = |kept: &mut Vec<FaceFloat>| {
+        kept.sort_unstable_by_key(|float| (std::cmp::Reverse(float.length), *float));
+        kept.truncate(most);
+    };
+    let (mut kept, mut count) = (Vec::new(), 0u64);
+    each_long_float(drawdown, lattice, window, limits, job, |float| {
+        count += 1;
+        kept.push(float);
+        if kept.len() >= 2 * most.max(1) {
+            shorten(&mut kept);
+        }
+    })?;
+    shorten(&mut kept);
+    Ok((kept, count))
+}
+
+/// Gives the floats of [`long_floats_in`], end by end and then pick by pick.
+fn each_long_float(
+    drawdown: &WeavePattern,
+    lattice: Lattice,
+    window: ClothBox,
+    [warp_limit, weft_limit]: [u32; 2],
+    job: &Job,
+    mut put: impl FnMut(FaceFloat),
+) -> Result<(), Cancelled> {
     for end in window.end..window.end + i64::from(window.ends) {
+        job.check()?;
         let is_up = |pick| up(drawdown, lattice, end, pick) == Some(true);
         runs(
             window.pick,
@@ -84,7 +137,7 @@ pub fn long_floats_in(
             warp_limit,
             is_up,
             |pick, length| {
-                found.push(FaceFloat {
+                put(FaceFloat {
                     warp: true,
                     end,
                     pick,
@@ -94,6 +147,7 @@ pub fn long_floats_in(
         );
     }
     for pick in window.pick..window.pick + i64::from(window.picks) {
+        job.check()?;
         let is_down = |end| up(drawdown, lattice, end, pick) == Some(false);
         runs(
             window.end,
@@ -101,7 +155,7 @@ pub fn long_floats_in(
             weft_limit,
             is_down,
             |end, length| {
-                found.push(FaceFloat {
+                put(FaceFloat {
                     warp: false,
                     end,
                     pick,
@@ -110,7 +164,7 @@ pub fn long_floats_in(
             },
         );
     }
-    found
+    Ok(())
 }
 
 /// Gives the runs longer than `limit` that reach into `count` threads from `first`.
@@ -173,6 +227,33 @@ mod tests {
             long_floats_in(&weave, Lattice::default(), window, 7, weft),
             []
         );
+    }
+
+    #[test]
+    fn the_longest_floats_are_those_of_the_whole_list() {
+        let mut weave = satin(8, 3).unwrap().repeated(40, 24, (0, 0));
+        for end in 3..19 {
+            weave.set(end, 7, false);
+        }
+        let window = ClothBox {
+            end: 0,
+            pick: 0,
+            ends: 40,
+            picks: 24,
+        };
+        let mut all = long_floats_in(&weave, Lattice::default(), window, 1, 2);
+        all.sort_by_key(|float| (std::cmp::Reverse(float.length), *float));
+        for most in [1, 3, 1000] {
+            let job = Job::new();
+            let (kept, count) =
+                longest_floats(&weave, Lattice::default(), [1, 2], most, &job).unwrap();
+            assert_eq!(count, all.len() as u64);
+            assert_eq!(kept, all[..most.min(all.len())]);
+        }
+        assert!(all[0].length > 7 && all.len() > 20);
+        let stopped = Job::new();
+        stopped.cancel();
+        assert!(longest_floats(&weave, Lattice::default(), [1, 2], 3, &stopped).is_err());
     }
 
     #[test]

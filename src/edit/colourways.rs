@@ -3,7 +3,7 @@
 use super::document::Work;
 use super::error::EditError;
 use super::threads;
-use crate::design::{Colourway, ColourwayError, Design, Yarn, YarnId};
+use crate::design::{Colourway, ColourwayError, Yarn, YarnId};
 
 fn missing(work: &Work, colourway: usize) -> EditError {
     EditError::Missing {
@@ -78,42 +78,17 @@ pub(super) fn name_own(work: &mut Work, name: String) -> Result<(), EditError> {
     Ok(())
 }
 
-/// The colourway after the one in use, by name; after the last comes the first. `None` =
-/// there are no others.
-///
-/// [`Edit::UseColourway`](super::Edit::UseColourway) puts the yarns in use where the chosen
-/// ones were, so that places in the list have no order to go round by; names have.
-pub fn next_colourway(design: &Design) -> Option<usize> {
-    let own = own_name(design);
-    let named = || {
-        let all = design.colourways().iter().enumerate();
-        all.map(|(place, colourway)| (colourway.name.as_str(), place))
-    };
-    let after = named().filter(|(name, _)| *name > own.as_str()).min();
-    after.or_else(|| named().min()).map(|(_, place)| place)
-}
-
-/// What the yarns in use are called, or will be once others take their place.
-fn own_name(design: &Design) -> String {
-    if !design.colourway.trim().is_empty() {
-        return design.colourway.clone();
-    }
-    let names = std::iter::once("original".to_owned())
-        .chain((2..).map(|number| format!("original {number}")));
-    let free = |name: &String| !is_taken(design, name);
-    names.into_iter().find(free).unwrap_or_default()
-}
-
-/// Whether a set of yarns of the design has this name.
-fn is_taken(design: &Design, name: &str) -> bool {
-    let same = |other: &str| other.trim().to_lowercase() == name.trim().to_lowercase();
-    let own = !design.colourway.is_empty() && same(&design.colourway);
-    own || (design.colourways().iter()).any(|other| same(&other.name))
-}
-
 /// Refuses the name of the design's own yarns for another colourway and the other way round.
 fn check_name(work: &Work, name: &str) -> Result<(), EditError> {
-    if is_taken(&work.design, name) {
+    let same = |other: &str| other.trim().to_lowercase() == name.trim().to_lowercase();
+    let own = !work.design.colourway.is_empty() && same(&work.design.colourway);
+    if own
+        || work
+            .design
+            .colourways()
+            .iter()
+            .any(|other| same(&other.name))
+    {
         return Err(EditError::Colourway(ColourwayError::Name {
             name: name.to_owned(),
             problem: "is taken",
@@ -125,7 +100,7 @@ fn check_name(work: &Work, name: &str) -> Result<(), EditError> {
 /// Its yarns become the design's own; those the design had take its place in the list.
 pub(super) fn make_current(work: &mut Work, colourway: usize) -> Result<(), EditError> {
     let mut colourways = listed(work, colourway)?;
-    work.design.colourway = own_name(&work.design);
+    work.design.colourway = work.design.own_colourway();
     let chosen = colourways[colourway].clone();
     let kept = Colourway {
         name: std::mem::replace(&mut work.design.colourway, chosen.name),

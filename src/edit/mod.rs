@@ -36,13 +36,12 @@ mod whole;
 
 pub use cells::{Cells, Rect};
 pub use change::{Change, Touched};
-pub use colourways::next_colourway;
 pub use document::Document;
 pub use edits::{Direction, Edit, Rows};
 pub use error::EditError;
 pub use history::{Entry, HISTORY_BYTES};
 pub use selection::{Clip, Picked, moved, picked};
-pub use symmetry::{Point, Span, Surface, Symmetry};
+pub use symmetry::{MOST_COPIES, Point, Span, Surface, Symmetry};
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]

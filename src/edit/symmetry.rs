@@ -21,6 +21,9 @@ pub struct Span {
     pub to: i64,
 }
 
+/// The most copies of a stroke that steps may make: a gesture stays a moment's work.
+pub const MOST_COPIES: u64 = 1 << 14;
+
 /// What is painted along with every crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Symmetry {
@@ -55,6 +58,16 @@ impl Surface {
             lattice: design.lattice(),
             symmetry: Symmetry::default(),
         }
+    }
+
+    /// How often steps of so many ends and picks (0 = none) paint everything; beyond
+    /// [`MOST_COPIES`] they are too small for the design.
+    pub fn copies(&self, (ends, picks): (u32, u32)) -> u64 {
+        let count = |every: u32, whole: u32| match every {
+            0 => 1,
+            every => u64::from((whole / every).max(1)),
+        };
+        count(ends, self.ends) * count(picks, self.picks)
     }
 
     /// The same surface with these symmetries.
@@ -300,6 +313,25 @@ mod tests {
             to: 2,
         };
         assert_eq!(found(surface(8, 8).with_symmetry(both), span).len(), 8);
+    }
+
+    #[test]
+    fn steps_are_counted_before_they_are_painted() {
+        let span = Span {
+            pick: 0,
+            from: 0,
+            to: 1,
+        };
+        for every in [(0, 0), (3, 0), (0, 2), (3, 2), (9, 9)] {
+            let symmetry = Symmetry {
+                every,
+                ..Symmetry::default()
+            };
+            let stepped = surface(8, 8).with_symmetry(symmetry);
+            let painted = found(stepped, span).len() as u64;
+            assert_eq!(stepped.copies(every), painted, "{every:?}");
+        }
+        assert!(surface(16_000, 20_000).copies((1, 1)) > MOST_COPIES);
     }
 
     #[test]

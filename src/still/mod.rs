@@ -10,6 +10,7 @@ mod effects;
 mod engine;
 mod first_sight;
 mod grid;
+mod part;
 mod picture;
 mod prepare;
 mod request;
@@ -19,6 +20,7 @@ pub use effects::{DIALS, DialError, EFFECTS};
 pub use engine::Engine;
 pub use first_sight::{FirstSight, SightTables};
 pub use grid::{render_grid, scene_files};
+pub use part::check_view;
 pub use picture::{Pass, Still, render, render_still, usual_width_mm};
 pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};
 pub use request::{
@@ -36,6 +38,7 @@ use crate::formats::png::PngError;
 use crate::formats::volume::VolumeFileError;
 use crate::job::Cancelled;
 use crate::render::LightError;
+use crate::synthesis::SynthesisError;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -59,7 +62,7 @@ pub enum StillError {
     #[error("a picture of {0} × {1} pixels cannot be made; give 1 to 16384 each way")]
     Size(u32, u32),
     /// A width of cloth that is not a length.
-    #[error("a picture {0} mm wide cannot be made; give a width between 0.01 and 10000 mm")]
+    #[error("a picture {0} mm wide cannot be made; give a width between 0.01 and 100000 mm")]
     Width(f32),
     /// A colourway that the design does not have.
     #[error(transparent)]
@@ -76,6 +79,17 @@ pub enum StillError {
     /// A name whose ending is not a format.
     #[error("{}: pictures are written as .png or .exr; end the name in one of them", .0.display())]
     Ending(PathBuf),
+}
+
+impl StillError {
+    /// Whether the picture takes in more of a very large design than is made into cloth at
+    /// once: [`FirstSight`] draws it all the same.
+    pub fn is_too_wide(&self) -> bool {
+        matches!(
+            self,
+            Self::Cloth(ClothError::Synthesis(SynthesisError::TooWide { .. }))
+        )
+    }
 }
 
 impl From<Cancelled> for StillError {
@@ -97,7 +111,7 @@ impl From<ClothError> for StillError {
     fn from(error: ClothError) -> Self {
         match error {
             ClothError::Exemplar(ExemplarError::Cancelled(cancelled))
-            | ClothError::Synthesis(crate::synthesis::SynthesisError::Cancelled(cancelled)) => {
+            | ClothError::Synthesis(SynthesisError::Cancelled(cancelled)) => {
                 Self::Cancelled(cancelled)
             }
             other => Self::Cloth(other),

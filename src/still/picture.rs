@@ -118,7 +118,7 @@ pub(super) fn camera_at(
         return Err(StillError::Size(width, height));
     }
     let width_mm = request.width_mm.unwrap_or(usual);
-    if !(0.01..=10_000.0).contains(&width_mm) {
+    if !(0.01..=100_000.0).contains(&width_mm) {
         return Err(StillError::Width(width_mm));
     }
     let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
@@ -287,7 +287,7 @@ impl Shot<'_> {
 }
 
 /// The stretch of cloth that a camera sees most of, mm in x and y.
-fn in_view(
+pub(super) fn in_view(
     camera: &Camera,
     request: &StillRequest,
 ) -> (std::ops::Range<f32>, std::ops::Range<f32>) {

@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::Vec3;
 
 use super::StillError;
+use super::part::{roomy, stretch};
 use super::picture::{SwitchedEffects, settings};
 use super::request::StillRequest;
 use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
@@ -13,7 +14,7 @@ use crate::design::{Design, WeavePattern, Yarn};
 use crate::exemplar::ExemplarStore;
 use crate::exemplar::hairs::HairPatch;
 use crate::job::Job;
-use crate::synthesis::Catalogue;
+use crate::synthesis::{Catalogue, Stretch};
 use crate::yarn::YarnRecipe;
 
 /// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
@@ -25,6 +26,8 @@ pub struct PreparedCloth {
     pub(super) seconds: Vec<(String, f64)>,
     pub(super) effects: SwitchedEffects,
     settings: ClothSettings,
+    /// The part of a very large design that it has; `None` = all of it.
+    within: Option<Stretch>,
     /// Hairs, made when first looked at.
     hairs: OnceLock<Option<Arc<HairPatch>>>,
 }
@@ -108,6 +111,12 @@ impl PreparedCloth {
         &self.design
     }
 
+    /// Whether a picture finds all it shows in this cloth; else the cloth is to
+    /// [`PreparedCloth::follow`] the eye.
+    pub fn covers(&self, request: &StillRequest) -> bool {
+        self.covers_design(&self.design, request).unwrap_or(false)
+    }
+
     /// Puts the cloth into the yarns of `design`, the same design in another colourway,
     /// without making anything anew. False, and nothing changed, where a yarn has another
     /// family or size: then [`prepare`] it.
@@ -121,7 +130,8 @@ impl PreparedCloth {
     }
 
     /// The cloth of an edited design, whose drawdown is `drawdown`: only what the edit
-    /// touches is made anew, and the outcome is what [`prepare`] gives. `None` where
+    /// touches, and of a very large design what the eye moved to, is made anew, and the
+    /// outcome is what [`prepare`] gives. `None` where
     /// nothing can be taken over: another sett, other families or sizes of yarn, other
     /// dials.
     ///
@@ -140,7 +150,12 @@ impl PreparedCloth {
         }
         let design = coloured(design, request)?;
         let begun = Instant::now();
-        let followed = self.cloth.follow(&self.drawdown, &design, drawdown, job)?;
+        let within = match self.covers_design(&design, request)? {
+            true => self.within.clone(),
+            false => roomy(&design, request)?,
+        };
+        let followed =
+            (self.cloth).follow(&self.drawdown, &design, drawdown, within.as_ref(), job)?;
         let Some(cloth) = followed else {
             return Ok(None);
         };
@@ -157,6 +172,7 @@ impl PreparedCloth {
             seconds: stages(0.0, begun.elapsed().as_secs_f64()),
             effects,
             settings,
+            within,
             hairs,
         };
         Ok(Some(if needed.contains(&true) {
@@ -164,6 +180,18 @@ impl PreparedCloth {
         } else {
             Followed::Ready(cloth)
         }))
+    }
+}
+
+impl PreparedCloth {
+    /// Whether the part it has is also what a picture of this design needs.
+    fn covers_design(&self, design: &Design, request: &StillRequest) -> Result<bool, StillError> {
+        let same = (design.ends(), design.picks()) == (self.design.ends(), self.design.picks());
+        Ok(match (&self.within, stretch(design, request)?) {
+            (None, None) => true,
+            (Some(within), Some(seen)) => same && within.holds(&seen),
+            _ => false,
+        })
     }
 }
 
@@ -210,8 +238,15 @@ pub fn prepare_woven(
     let design = &coloured(design, request)?;
     let begun = Instant::now();
     let catalogue = Arc::new(Catalogue::standard());
-    let (assignment, needed) =
-        ClothVolume::assign_weave(drawdown, design.lattice(), &catalogue, &settings, job)?;
+    let (within, lattice) = (roomy(design, request)?, design.lattice());
+    let (assignment, needed) = ClothVolume::assign_weave(
+        drawdown,
+        lattice,
+        within.as_ref(),
+        &catalogue,
+        &settings,
+        job,
+    )?;
     let assigning = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let classes = YarnClasses::new(design);
@@ -241,6 +276,7 @@ pub fn prepare_woven(
         seconds: stages(exemplars, assigning + begun.elapsed().as_secs_f64()),
         effects,
         settings,
+        within,
         hairs: OnceLock::new(),
     })
 }

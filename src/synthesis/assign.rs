@@ -18,6 +18,10 @@ use super::SynthesisError;
 use super::catalogue::{Catalogue, NO_BLOCK, Side};
 use super::chain::{Column, Scratch, cover};
 use super::hash::{hash, index_below};
+use super::part::Stretch;
+
+/// The most crossings of a design that is assigned whole (2²⁸, 512 MiB of blocks).
+const MOST_WHOLE: u64 = 1 << 28;
 
 /// How a block is chosen for each crossing, from crude to reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -32,7 +36,7 @@ pub enum Method {
 }
 
 /// The block each crossing of a design copies: two bytes a crossing, in columns that
-/// clones share until they are edited.
+/// clones share until they are edited. A column that was not asked for is empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assignment {
     columns: Vec<Arc<[u16]>>,
@@ -49,7 +53,8 @@ pub struct Assignment {
 /// The same input gives the same blocks for any number of threads.
 ///
 /// # Errors
-/// When the lattice is dropped in both directions, or the job is cancelled.
+/// When the lattice is dropped in both directions, the pattern is larger than is assigned
+/// whole (2²⁸ crossings), or the job is cancelled.
 pub fn assign(
     pattern: &WeavePattern,
     lattice: Lattice,
@@ -58,18 +63,54 @@ pub fn assign(
     seed: u64,
     job: &Job,
 ) -> Result<Assignment, SynthesisError> {
+    let (ends, picks) = (pattern.ends(), pattern.picks());
+    if u64::from(ends) * u64::from(picks) > MOST_WHOLE {
+        return Err(SynthesisError::TooMany {
+            ends,
+            picks,
+            most: MOST_WHOLE,
+        });
+    }
+    let mut assignment = blank(pattern, lattice, method, seed)?;
+    assignment.redo(pattern, catalogue, &vec![true; ends as usize], job)?;
+    Ok(assignment)
+}
+
+/// Chooses a block for every crossing of the columns that lie in `stretch`: the blocks
+/// that [`assign`] chooses for them. Elsewhere there is no cloth.
+///
+/// # Errors
+/// As [`assign`]; of the pattern's size, the columns of the stretch alone count, see
+/// [`Stretch::columns`].
+pub fn assign_part(
+    pattern: &WeavePattern,
+    lattice: Lattice,
+    catalogue: &Catalogue,
+    (method, seed): (Method, u64),
+    stretch: &Stretch,
+    job: &Job,
+) -> Result<Assignment, SynthesisError> {
+    let mut assignment = blank(pattern, lattice, method, seed)?;
+    assignment.look_at(pattern, catalogue, stretch, job)?;
+    Ok(assignment)
+}
+
+/// An assignment of no column yet.
+fn blank(
+    pattern: &WeavePattern,
+    lattice: Lattice,
+    method: Method,
+    seed: u64,
+) -> Result<Assignment, SynthesisError> {
     check_lattice(lattice)?;
-    let blank: Arc<[u16]> = Arc::from([]);
-    let mut assignment = Assignment {
-        columns: vec![blank; pattern.ends() as usize],
+    let column: Arc<[u16]> = Arc::from([]);
+    Ok(Assignment {
+        columns: vec![column; pattern.ends() as usize],
         picks: pattern.picks(),
         lattice,
         method,
         seed,
-    };
-    let all = vec![true; pattern.ends() as usize];
-    assignment.redo(pattern, catalogue, &all, job)?;
-    Ok(assignment)
+    })
 }
 
 /// Refuses a lattice that is dropped in both directions: its neighbours are not mutual.
@@ -101,19 +142,19 @@ impl Assignment {
         self.method
     }
 
-    /// The block of a crossing inside the design.
+    /// The block of a crossing inside the design, in a column that is assigned.
     #[inline]
     pub fn block(&self, end: u32, pick: u32) -> u16 {
         self.columns[end as usize][pick as usize]
     }
 
-    /// The blocks of one end, from pick 0 upwards.
+    /// The blocks of one end, from pick 0 upwards; none where it is not assigned.
     pub fn column(&self, end: u32) -> &[u16] {
         &self.columns[end as usize]
     }
 
     /// The block of a crossing of the endless cloth, before randomisation; `None` where
-    /// there is no cloth.
+    /// there is no cloth or its column is not assigned.
     #[inline]
     pub fn at(&self, end: i64, pick: i64) -> Option<u16> {
         // Most lookups fall inside the design and need no lattice.
@@ -123,13 +164,56 @@ impl Assignment {
             Some(crossing) => crossing,
             None => self.lattice.wrap(end, pick, self.ends(), self.picks)?,
         };
-        Some(self.block(end, pick))
+        self.columns[end as usize].get(pick as usize).copied()
     }
 
     /// Bytes held by the blocks.
     pub fn bytes(&self) -> usize {
-        let column = self.picks as usize * size_of::<u16>() + 2 * size_of::<usize>();
-        self.columns.len() * (column + size_of::<Arc<[u16]>>())
+        let counts = 2 * size_of::<usize>();
+        let column = |blocks: &Arc<[u16]>| match blocks.len() {
+            0 => size_of::<Arc<[u16]>>(),
+            picks => picks * size_of::<u16>() + counts + size_of::<Arc<[u16]>>(),
+        };
+        self.columns.iter().map(column).sum()
+    }
+
+    /// Assigns the columns of `stretch` that are not assigned yet, and forgets all others.
+    ///
+    /// # Errors
+    /// When the stretch is too wide, the pattern has another size, or the job is cancelled;
+    /// the assignment is then as it was.
+    pub fn look_at(
+        &mut self,
+        pattern: &WeavePattern,
+        catalogue: &Catalogue,
+        stretch: &Stretch,
+        job: &Job,
+    ) -> Result<(), SynthesisError> {
+        self.check_size(pattern)?;
+        let wanted = stretch.columns(self.ends(), self.picks, self.lattice)?;
+        let missing: Vec<bool> = (wanted.iter().zip(&self.columns))
+            .map(|(&wanted, column)| wanted && column.is_empty())
+            .collect();
+        self.redo(pattern, catalogue, &missing, job)?;
+        let none: Arc<[u16]> = Arc::from([]);
+        for (column, wanted) in self.columns.iter_mut().zip(wanted) {
+            if !wanted {
+                *column = Arc::clone(&none);
+            }
+        }
+        Ok(())
+    }
+
+    fn check_size(&self, pattern: &WeavePattern) -> Result<(), SynthesisError> {
+        if (pattern.ends(), pattern.picks()) == (self.ends(), self.picks) {
+            return Ok(());
+        }
+        Err(SynthesisError::SizeChanged {
+            ends: pattern.ends(),
+            picks: pattern.picks(),
+            was_ends: self.ends(),
+            was_picks: self.picks,
+        })
     }
 
     /// Follows a change of `cells` that has led to `pattern`, and returns the ends whose
@@ -149,14 +233,7 @@ impl Assignment {
         cells: &[(u32, u32)],
         job: &Job,
     ) -> Result<Vec<u32>, SynthesisError> {
-        if (pattern.ends(), pattern.picks()) != (self.ends(), self.picks) {
-            return Err(SynthesisError::SizeChanged {
-                ends: pattern.ends(),
-                picks: pattern.picks(),
-                was_ends: self.ends(),
-                was_picks: self.picks,
-            });
-        }
+        self.check_size(pattern)?;
         let mut stale = vec![false; self.columns.len()];
         for &(end, pick) in cells {
             if end >= self.ends() || pick >= self.picks {
@@ -165,7 +242,8 @@ impl Assignment {
             for (dx, dy) in self.dependents() {
                 let cell = (i64::from(end) + dx, i64::from(pick) + dy);
                 let (end, _) = neighbour_cell(pattern, self.lattice, cell.0, cell.1);
-                stale[end as usize] = true;
+                // What is not assigned has nothing to follow.
+                stale[end as usize] = !self.columns[end as usize].is_empty();
             }
         }
         self.redo(pattern, catalogue, &stale, job)

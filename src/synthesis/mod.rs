@@ -9,7 +9,8 @@
 //!    consistent, §5.3).
 //! 2. [`assign`]: weave pattern + lattice → [`Assignment`], a block for every crossing of
 //!    the design, with as much continuity as possible (§5.4). [`Assignment::edit`]
-//!    follows a change of the pattern.
+//!    follows a change of the pattern. Of very large designs only the columns in view are
+//!    assigned ([`assign_part`], [`Stretch`]).
 //! 3. [`Randomisation`]: at lookup, patches of crossings are moved along the exemplars'
 //!    own symmetries, so that the cloth has no period (§5.4, *Randomization*).
 //! 4. [`EdgeFix`]: from the heights of the yarns at the blocks' edges ([`EdgeHeights`])
@@ -29,15 +30,17 @@ mod hash;
 mod heights;
 mod laplace;
 mod lookup;
+mod part;
 mod quality;
 mod shift;
 mod weaves;
 
-pub use assign::{Assignment, Method, assign};
+pub use assign::{Assignment, Method, assign, assign_part};
 pub use catalogue::{Catalogue, Place, Side};
 pub use edges::{BOUND_COLUMN, EdgeFix, NeighbourBits, Rank, SeamCoefficients};
 pub use heights::{EdgeHeights, Face};
 pub use lookup::{BlockRef, Neighbourhood, Placement, SeamRms};
+pub use part::{MOST_AT_ONCE, Stretch};
 pub use quality::{Continuity, Quality};
 pub use shift::Randomisation;
 
@@ -108,6 +111,30 @@ pub enum SynthesisError {
         was_ends: u32,
         /// Picks of the assignment.
         was_picks: u32,
+    },
+    /// More crossings than are assigned at once.
+    #[error(
+        "{ends} × {picks} crossings are too many to make into cloth at once (the most is {most}): crop the design, or look at a part of it"
+    )]
+    TooMany {
+        /// Ends of the pattern.
+        ends: u32,
+        /// Picks of the pattern.
+        picks: u32,
+        /// The most crossings.
+        most: u64,
+    },
+    /// A view of more columns than are assigned at once.
+    #[error(
+        "the view takes in {ends} ends of {picks} picks each, of which at most {most} are made into cloth at once: look closer, or crop the design"
+    )]
+    TooWide {
+        /// Ends in view.
+        ends: u64,
+        /// Picks of each.
+        picks: u32,
+        /// The most ends.
+        most: u64,
     },
     /// Edge heights that do not fit the catalogue or each other.
     #[error("edge heights of exemplar set {set}: {what}; measure them again for this catalogue")]

@@ -328,7 +328,7 @@ class Flow:
         self.desk.key("alt+5")
 
     def next_colourway(self):
-        self.desk.key("shift+c")
+        self.desk.key("period")
 
 
 def main(arguments):

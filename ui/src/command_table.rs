@@ -93,11 +93,22 @@ pub enum Command {
     Words,
     CropToSelection,
     Repeat2,
+    RepeatMore,
+    ClearCorrections,
     SymmetryAcross,
     SymmetryAlong,
+    SymmetrySteps,
+    Reference,
+    ReferenceShown,
+    ReferenceFit,
+    NextColourway,
+    PreviousColourway,
+    /// The colourway of this place by name, from 1.
+    Colourway(u8),
+    ContactSheet,
+    SideBySide,
     DeriveDraft,
     BecomeJacquard,
-    NextColourway,
     Arrange(DraftLayout),
     Use(Tool),
     SwapColours,
@@ -133,6 +144,7 @@ pub enum Menu {
     File,
     Edit,
     Weave,
+    Colours,
     Tools,
     Cloth,
     View,
@@ -146,6 +158,7 @@ impl Menu {
         Self::File,
         Self::Edit,
         Self::Weave,
+        Self::Colours,
         Self::Tools,
         Self::Cloth,
         Self::View,
@@ -159,6 +172,7 @@ impl Menu {
             Self::File => "File",
             Self::Edit => "Edit",
             Self::Weave => "Weave",
+            Self::Colours => "Colours",
             Self::Tools => "Tools",
             Self::Cloth => "Cloth",
             Self::View => "View",
@@ -191,6 +205,10 @@ const fn ctrl(key: Key) -> KeyboardShortcut {
 
 const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     with(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+const fn ctrl_alt(key: Key) -> KeyboardShortcut {
+    with(Modifiers::COMMAND.plus(Modifiers::ALT), key)
 }
 
 const fn alt(key: Key) -> KeyboardShortcut {
@@ -266,15 +284,30 @@ pub const TABLE: &[Row] = &[
     row(Command::Repeat, Menu::Weave, "Repeat…", "Straight, shifted like bricks, or not at all", &[]),
     row(Command::CropToSelection, Menu::Weave, "Crop to the selection", "Keep the selected crossings alone", &[]),
     row(Command::Repeat2, Menu::Weave, "Repeat 2 × 2", "Four repeats become one, so that they can differ", &[]),
+    row(Command::RepeatMore, Menu::Weave, "Repeat more often…", "As many repeats as you like become one", &[]),
+    row(Command::ClearCorrections, Menu::Weave, "Clear hand corrections", "The weaves of the regions again, where selected or everywhere", &[]),
     apart(row(Command::DeriveDraft, Menu::Weave, "Derive the draft", "Threading, tie-up and treadling on the fewest shafts", &[])),
     row(Command::Loom, Menu::Weave, "Loom…", "Shafts and treadles, lift plan, rising or sinking shed", &[]),
     row(Command::BecomeJacquard, Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])
     ,
-    apart(row(Command::NextColourway, Menu::Weave, "Next colourway", "Weave in the yarns of the next colourway by name; after the last comes the first", &[shift(Key::C)])),
     apart(row(Command::Words, Menu::Weave, "Name and notes…", "What the design is called, and what to remember", &[])),
     apart(row(Command::Arrange(DraftLayout::Us), Menu::Weave, "US layout", "Threading above, ends counted from the right", &[])),
     row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below, ends counted from the left", &[]),
     row(Command::Arrange(DraftLayout::Jacquard), Menu::Weave, "Drawdown alone", "Neither threading nor treadling", &[]),
+
+    row(Command::NextColourway, Menu::Colours, "Next colourway", "Weave in the next set of yarns, by name", &[plain(Key::Period)]),
+    row(Command::PreviousColourway, Menu::Colours, "Previous colourway", "Weave in the set of yarns before, by name", &[plain(Key::Comma)]),
+    apart(row(Command::Colourway(1), Menu::Colours, "Colourway 1", "The first by name", &[ctrl_alt(Key::Num1)])),
+    row(Command::Colourway(2), Menu::Colours, "Colourway 2", "The second by name", &[ctrl_alt(Key::Num2)]),
+    row(Command::Colourway(3), Menu::Colours, "Colourway 3", "The third by name", &[ctrl_alt(Key::Num3)]),
+    row(Command::Colourway(4), Menu::Colours, "Colourway 4", "The fourth by name", &[ctrl_alt(Key::Num4)]),
+    row(Command::Colourway(5), Menu::Colours, "Colourway 5", "The fifth by name", &[ctrl_alt(Key::Num5)]),
+    row(Command::Colourway(6), Menu::Colours, "Colourway 6", "The sixth by name", &[ctrl_alt(Key::Num6)]),
+    row(Command::Colourway(7), Menu::Colours, "Colourway 7", "The seventh by name", &[ctrl_alt(Key::Num7)]),
+    row(Command::Colourway(8), Menu::Colours, "Colourway 8", "The eighth by name", &[ctrl_alt(Key::Num8)]),
+    row(Command::Colourway(9), Menu::Colours, "Colourway 9", "The ninth by name", &[ctrl_alt(Key::Num9)]),
+    apart(row(Command::ContactSheet, Menu::Colours, "Contact sheet", "All colourways of the cloth at once", &[plain(Key::K)])),
+    row(Command::SideBySide, Menu::Colours, "Two side by side", "The colourway in use beside another", &[shift(Key::K)]),
 
     row(Command::Use(Tool::Pencil), Menu::Tools, "Pencil", "Paint crossings; the right button paints the other value", &[plain(Key::P)]),
     row(Command::Use(Tool::Line), Menu::Tools, "Line", "A straight line of crossings", &[plain(Key::L)]),
@@ -288,13 +321,17 @@ pub const TABLE: &[Row] = &[
     apart(row(Command::SwapColours, Menu::Tools, "Exchange the paint", "Exchange what the first and the second button paint", &[plain(Key::X)])),
     row(Command::SymmetryAcross, Menu::Tools, "Paint mirrored left and right", "What is painted left is painted right as well", &[]),
     row(Command::SymmetryAlong, Menu::Tools, "Paint mirrored top and bottom", "What is painted above is painted below as well", &[]),
+    row(Command::SymmetrySteps, Menu::Tools, "Paint in steps", "What is painted is painted again every so many ends and picks", &[]),
+    apart(row(Command::Reference, Menu::Tools, "Reference image…", "A picture over the draft to draw by; it is no part of the weave", &[])),
+    row(Command::ReferenceShown, Menu::Tools, "Show the reference", "Show or hide the picture that is drawn by", &[plain(Key::V)]),
+    row(Command::ReferenceFit, Menu::Tools, "How the reference lies…", "How strongly it shows, and whether it is stretched", &[]),
 
     row(Command::TurnOver, Menu::Cloth, "Turn the cloth over", "From the face to the back and again, as one turns a page", &[plain(Key::T)]),
     row(Command::Straighten, Menu::Cloth, "Look straight on", "The eye above the cloth again", &[plain(Key::Num0)]),
     apart(row(Command::Orbit(Toward::Left), Menu::Cloth, "Turn the eye left", "Round the cloth; lower the eye first", &[plain(Key::OpenBracket)])),
     row(Command::Orbit(Toward::Right), Menu::Cloth, "Turn the eye right", "Round the cloth; lower the eye first", &[plain(Key::CloseBracket)]),
-    row(Command::Orbit(Toward::Up), Menu::Cloth, "Raise the eye", "Towards straight above the cloth", &[plain(Key::Period)]),
-    row(Command::Orbit(Toward::Down), Menu::Cloth, "Lower the eye", "Towards the edge of the cloth", &[plain(Key::Comma)]),
+    row(Command::Orbit(Toward::Up), Menu::Cloth, "Raise the eye", "Towards straight above the cloth", &[shift(Key::OpenBracket)]),
+    row(Command::Orbit(Toward::Down), Menu::Cloth, "Lower the eye", "Towards the edge of the cloth", &[shift(Key::CloseBracket)]),
     apart(row(Command::Pan(Toward::Left), Menu::Cloth, "Look further left", "Along the cloth; the arrow keys do it too while the cloth has the keyboard", &[ctrl_shift(Key::ArrowLeft)])),
     row(Command::Pan(Toward::Right), Menu::Cloth, "Look further right", "Along the cloth", &[ctrl_shift(Key::ArrowRight)]),
     row(Command::Pan(Toward::Up), Menu::Cloth, "Look further up", "Along the cloth", &[ctrl_shift(Key::ArrowUp)]),

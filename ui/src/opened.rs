@@ -71,7 +71,12 @@ impl Opened {
 
     /// Opens a file.
     pub fn file(path: PathBuf) -> anyhow::Result<Self> {
-        let Imported { design, warnings } = formats::load(&path, &LoadOptions::default())?;
+        Self::read(path, &LoadOptions::default())
+    }
+
+    /// Opens a file of which the person knows more than it says.
+    pub fn read(path: PathBuf, options: &LoadOptions) -> anyhow::Result<Self> {
+        let Imported { design, warnings } = formats::load(&path, options)?;
         Ok(Self::new(design, warnings, Some(path)))
     }
 

@@ -204,6 +204,9 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Decoded, ImageError> {
     }
 }
 
+/// The most pixels of an image in true colours (768 MiB).
+const MOST_COLOURED: u64 = 1 << 28;
+
 /// Refuses a declared size that no design has, or that `bytes` bytes cannot hold at
 /// `most_per_byte` pixels a byte, before memory is asked for.
 fn check_declared(
@@ -234,6 +237,21 @@ fn check_declared(
     Ok((width as u32, height as u32))
 }
 
+/// Refuses a picture in true colours that is too large to hold: three bytes a pixel, which
+/// are only looked at to tell regions or yarns apart.
+fn check_coloured((width, height): (u32, u32)) -> Result<(), Fault> {
+    if u64::from(width) * u64::from(height) > MOST_COLOURED {
+        let problem = format!(
+            "{width} × {height} pixels in true colours, of which at most {MOST_COLOURED} are read"
+        );
+        return Err(Fault::new(
+            problem,
+            "save it with a palette, or cut it into parts",
+        ));
+    }
+    Ok(())
+}
+
 /// Remembers one warning once.
 fn remark(warnings: &mut Vec<String>, what: &str) {
     if !warnings.iter().any(|known| known == what) {
@@ -255,6 +273,10 @@ mod tests {
         assert!(message.problem.contains("more than a design"));
         let message = check_declared(16_384, 16_384, 100, 1024).unwrap_err();
         assert!(message.problem.contains("cannot hold them"));
+        assert!(check_declared(16_000, 20_000, 1 << 20, 8256).is_ok());
+        assert!(check_coloured((16_384, 16_384)).is_ok());
+        let message = check_coloured((16_000, 20_000)).unwrap_err();
+        assert!(message.remedy.contains("palette"));
         assert!(check_declared(0, 7, 100, 100).is_err());
         assert!(check_declared(u64::MAX, u64::MAX, usize::MAX, u64::MAX).is_err());
     }

@@ -3,7 +3,7 @@
 use pcx::Reader;
 
 use super::raster::fill_palette;
-use super::{Fault, Pixels, Raster, check_declared};
+use super::{Fault, Pixels, Raster, check_coloured, check_declared};
 use crate::design::Srgb;
 
 /// Two bytes stand for at most 63 bytes of 8 pixels.
@@ -24,6 +24,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
     let (width, height) = check_declared(width.into(), height.into(), bytes.len(), MOST_PER_BYTE)?;
     let (across, down) = (width as usize, height as usize);
     if !reader.is_paletted() {
+        check_coloured((width, height))?;
         let mut colours = vec![[0u8; 3]; across * down];
         for row in colours.chunks_mut(across) {
             reader

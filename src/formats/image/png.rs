@@ -5,7 +5,7 @@ use std::io::Cursor;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations, Unit};
 
 use super::raster::{fill_palette, over_white, unpack};
-use super::{Fault, Pixels, Raster, TRANSPARENT, check_declared, remark};
+use super::{Fault, Pixels, Raster, TRANSPARENT, check_coloured, check_declared, remark};
 use crate::design::Srgb;
 
 /// Deflate cannot do better than 1032 to 1; a byte holds at most 8 pixels.
@@ -19,12 +19,17 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
     decoder.set_transformations(Transformations::IDENTITY);
     let header = decoder.read_header_info().map_err(Fault::damaged)?;
     let bits = header.bits_per_pixel() as u64;
+    let indexed = header.color_type == ColorType::Indexed
+        || (header.color_type == ColorType::Grayscale && header.bit_depth != BitDepth::Sixteen);
     let (width, height) = check_declared(
         header.width.into(),
         header.height.into(),
         bytes.len(),
         (MOST_PER_BYTE / bits).max(1),
     )?;
+    if !indexed {
+        check_coloured((width, height))?;
+    }
     let mut reader = decoder.read_info().map_err(Fault::damaged)?;
     let info = reader.info();
     let per_cm = info.pixel_dims.and_then(|dims| match dims.unit {

@@ -15,7 +15,9 @@ use tiff::tags::{CompressionMethod, Tag};
 
 use super::png::to_eight;
 use super::raster::{fill_palette, over_white, unpack};
-use super::{Fault, Pixels, Raster, SAVE_PLAIN, TRANSPARENT, check_declared, remark};
+use super::{
+    Fault, Pixels, Raster, SAVE_PLAIN, TRANSPARENT, check_coloured, check_declared, remark,
+};
 use crate::design::Srgb;
 use crate::formats::MAX_FILE;
 
@@ -51,6 +53,9 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
     let patched = fields.patched(bytes, &mut decoder)?;
     drop(decoder);
     let mut decoder = open(patched)?;
+    if !fields.indexed() {
+        check_coloured((fields.width, fields.height))?;
+    }
     let mut canvas = Canvas::new(&fields);
     let (across, chunks) = match decoder.get_chunk_type() {
         ChunkType::Strip => (1, decoder.strip_count()),

@@ -39,7 +39,8 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     };
     let progress = Progress::new();
     let job = interruptible(&progress);
-    let prepared = still::prepare(&opened.design, &request, &ExemplarStore::user(), &job);
+    let there = request.clone().over(&opened.design, &region);
+    let prepared = still::prepare(&opened.design, &there, &ExemplarStore::user(), &job);
     progress.finish();
     let prepared = prepared?;
     let part = if args.face { Part::Face } else { Part::Whole };

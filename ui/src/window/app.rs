@@ -16,6 +16,7 @@ use super::crossing;
 use super::draft::DraftPane;
 use super::export::Export;
 use super::files::Files;
+use super::import::Import;
 use super::layout::Layout;
 use super::lost::{Guard, Restarts};
 use super::menu::{self, Choice, Situation};
@@ -49,6 +50,8 @@ pub struct App {
     pub(super) layout: Layout,
     pub(super) start: StartPage,
     pub(super) files: Files,
+    /// What is asked of an image before it is opened.
+    pub(super) import: Option<Import>,
     pub(super) autosave: Autosave,
     pub(super) export: Export,
     pub(super) volume: VolumeExport,
@@ -94,6 +97,7 @@ impl App {
             layout: Layout::from_kept(settings.layout.take()),
             start: StartPage::default(),
             files: Files::default(),
+            import: None,
             autosave: Autosave::new(ctx, options.recovery),
             export: Export::default(),
             volume: VolumeExport::default(),
@@ -120,7 +124,8 @@ impl App {
             app.warn(wrong, "Nothing of your designs is lost.");
         }
         if let Some(opened) = opened {
-            app.take_design(&opened);
+            let session = Session::of(&opened);
+            app.take_design(&opened, session);
         }
         Ok(app)
     }
@@ -193,7 +198,6 @@ impl App {
             undo: document.filter(|d| d.can_undo()).and_then(|_| name(at)),
             redo: document.filter(|d| d.can_redo()).and_then(|_| name(at + 1)),
             selection: self.draft.selection().is_some(),
-            colourways: document.is_some_and(|d| !d.design().colourways().is_empty()),
             view: self.preview.view,
             light: &self.preview.light,
             paused: self.preview.paused,
@@ -205,6 +209,14 @@ impl App {
             ghosts: self.draft.show.ghosts,
             navigator: self.draft.show.navigator,
             symmetry: self.draft.symmetry,
+            steps: self.draft.steps.on,
+            reference: self
+                .draft
+                .reference
+                .as_ref()
+                .map(|reference| reference.shown),
+            colourways: document.map_or(0, |document| document.design().colourways().len()),
+            sheet: self.preview.sheet_kind(),
             recent: &self.settings.recent,
         }
     }
@@ -300,6 +312,7 @@ impl App {
 
     /// What will be kept for the next start.
     fn keep_settings(&mut self, ctx: &egui::Context) {
+        self.remember_reference();
         let show = &self.draft.show;
         self.settings.light = ctx.theme() == egui::Theme::Light;
         self.settings.layout = Some(self.layout.kept());
@@ -396,6 +409,7 @@ impl App {
         hovered_ui(&ctx, pane);
         self.toasts.show(&ctx, pane.right_bottom());
         self.files.show(&ctx);
+        self.import_ui(&ctx);
         self.export.show(&ctx);
         self.volume.show(&ctx);
         self.asking_ui(&ctx);

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, CursorIcon, PointerButton, Rect, Response, Sense, Stroke, TextureHandle,
-    TextureOptions, vec2,
+    Color32, ColorImage, CursorIcon, Painter, PointerButton, Rect, Response, Sense, Stroke,
+    TextureHandle, TextureOptions, vec2,
 };
 
 use super::focus;
@@ -92,19 +92,11 @@ impl ClothPane {
         move_view(ui, &response, pane, view);
         let painter = ui.painter_at(pane);
         painter.rect_filled(pane, 0.0, tokens::SURROUND);
-        let draw = |still: &StillRequest, texture: &TextureHandle| {
-            if let (Some(centre_mm), Some(width_mm)) = (still.centre_mm, still.width_mm) {
-                let aspect = still.width as f32 / still.height.max(1) as f32;
-                let rect = view.picture_rect(pane, centre_mm, width_mm, aspect);
-                let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-                painter.image(texture.id(), rect, whole, Color32::WHITE);
-            }
-        };
         if let Some((still, texture)) = &self.under {
-            draw(still, texture);
+            draw_picture(&painter, pane, *view, still, texture);
         }
         if let Some(shown) = &self.shown {
-            draw(&shown.still, &shown.texture);
+            draw_picture(&painter, pane, *view, &shown.still, &shown.texture);
             scale_bar_ui(ui, pane, view);
         }
         if let Some([left, low, right, high]) = marked {
@@ -131,8 +123,24 @@ impl ClothPane {
     }
 }
 
+/// Draws a picture where it belongs, however the eye moved since it was asked for.
+pub fn draw_picture(
+    painter: &Painter,
+    pane: Rect,
+    view: ClothView,
+    still: &StillRequest,
+    texture: &TextureHandle,
+) {
+    if let (Some(centre_mm), Some(width_mm)) = (still.centre_mm, still.width_mm) {
+        let aspect = still.width as f32 / still.height.max(1) as f32;
+        let rect = view.picture_rect(pane, centre_mm, width_mm, aspect);
+        let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+        painter.image(texture.id(), rect, whole, Color32::WHITE);
+    }
+}
+
 /// Drag pans, the wheel and pinching zoom at the pointer, arrow keys pan.
-fn move_view(ui: &egui::Ui, response: &Response, pane: Rect, view: &mut ClothView) {
+pub fn move_view(ui: &egui::Ui, response: &Response, pane: Rect, view: &mut ClothView) {
     let shift = ui.input(|input| input.modifiers.shift);
     let pans = response.dragged_by(PointerButton::Middle)
         || (response.dragged_by(PointerButton::Primary) && !shift);

@@ -1,6 +1,6 @@
 //! One crossing in words.
 
-use pickglass::design::{FaceFloat, float_through};
+use pickglass::design::{FaceFloat, Structure, float_through};
 use pickglass::edit::Document;
 
 use super::draft::end_number;
@@ -38,11 +38,19 @@ pub fn describe(
         length if length > limits[usize::from(!warp)] => format!("float over {length}, too long"),
         length => format!("float over {length}"),
     };
+    let region = match design.structure() {
+        Structure::Regions(regions) => {
+            let number = regions.map().get(home_end, home_pick);
+            let region = regions.palette().get(usize::from(number))?;
+            format!(" · {}", region.name)
+        }
+        _ => String::new(),
+    };
     let ends = i64::from(drawdown.ends());
     let end = end_number(i64::from(home_end), ends, arrangement);
     let pick = home_pick + 1;
     Some(format!(
-        "end {end} · pick {pick} · {above} over {below} · {over}"
+        "end {end} · pick {pick} · {above} over {below} · {over}{region}"
     ))
 }
 

@@ -8,7 +8,7 @@ use pickglass::design::Design;
 use pickglass::job::Job;
 
 use super::icons;
-use super::task::{Outcome, Task};
+use super::task::{Outcome, Pace, Task, left};
 use super::toasts::Grade;
 use crate::tokens::{self, Palette};
 use crate::values;
@@ -52,9 +52,56 @@ struct Form {
     design: Arc<Design>,
     still: StillRequest,
     width: u32,
+    until: Until,
     seconds: f64,
+    samples: u32,
+    /// Per cent.
+    error: f64,
     path: String,
     wrong: Option<String>,
+}
+
+/// What ends the refining.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Until {
+    Seconds,
+    Samples,
+    Error,
+}
+
+impl Form {
+    fn stop(&self) -> Stop {
+        match self.until {
+            Until::Seconds => Stop {
+                seconds: Some(self.seconds),
+                ..Stop::default()
+            },
+            Until::Samples => Stop {
+                spp: Some(self.samples),
+                ..Stop::default()
+            },
+            Until::Error => Stop {
+                error: Some(self.error / 100.0),
+                ..Stop::default()
+            },
+        }
+    }
+}
+
+/// How far a picture is, in words.
+fn refined(stop: &Stop, spp: u32, seconds: f64, error: Option<f64>) -> String {
+    let share = match (stop.seconds, stop.spp, stop.error, error) {
+        (Some(all), ..) => seconds / all,
+        (None, Some(all), ..) => f64::from(spp) / f64::from(all.max(1)),
+        // The error falls with the square root of the samples.
+        (None, None, Some(wanted), Some(now)) => (wanted / now).powi(2),
+        _ => 0.0,
+    };
+    let left = left(seconds, share.min(1.0));
+    let error = error.map_or_else(String::new, |error| {
+        format!(" · error {:.1} %", 100.0 * error)
+    });
+    format!("{spp} spp · {seconds:.0} s{error}{left}")
 }
 
 struct Work {
@@ -79,7 +126,10 @@ impl Export {
                     None => format!("{}.png", design.name.replace(['/', '\\'], "-")),
                 },
                 width: self.defaults.width,
+                until: Until::Seconds,
                 seconds: self.defaults.seconds,
+                samples: 256,
+                error: 5.0,
                 design,
                 still,
                 wrong: None,
@@ -168,21 +218,19 @@ impl Export {
             *told.lock().unwrap_or_else(PoisonError::into_inner) = text;
             told_ctx.request_repaint();
         };
-        let tell_stage = tell.clone();
+        let (tell_stage, pace) = (tell.clone(), Pace::default());
         let job = Job::new().with_listener(move |stage, fraction| {
-            tell_stage(format!("{stage} {:.0} %", fraction * 100.0));
+            tell_stage(pace.told(stage, fraction));
         });
+        let stop = form.stop();
         let mut still = form.still;
         still.height = scaled_height(&still, form.width);
         still.width = form.width;
-        still.stop = Stop {
-            seconds: Some(form.seconds),
-            ..Stop::default()
-        };
+        still.stop = stop;
         let (design, work_job) = (form.design, job.clone());
         let task = Task::start(ctx, "export", move || {
             let rendered = still::render_still(&design, &still, &work_job, &mut |pass| {
-                tell(format!("{} spp · {:.0} s", pass.spp, pass.seconds));
+                tell(refined(&stop, pass.spp, pass.seconds, pass.error));
             });
             match rendered.and_then(|done| done.save(&path).map(|()| done.report)) {
                 Ok(report) => Exported::Written(path, Box::new(report)),
@@ -231,14 +279,31 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
             ui.label("Height");
             ui.label(format!("{} px", scaled_height(&form.still, form.width)));
             ui.end_row();
-            let label = ui.label("Refine for");
-            ui.add(
-                DragValue::new(&mut form.seconds)
-                    .range(0.1..=36_000.0)
-                    .suffix(" s"),
-            )
-            .labelled_by(label.id);
-            ui.end_row();
+            for (until, name) in [
+                (Until::Seconds, "Refine for"),
+                (Until::Samples, "Refine up to"),
+                (Until::Error, "Refine until the error is"),
+            ] {
+                ui.radio_value(&mut form.until, until, name);
+                let field = match until {
+                    Until::Seconds => DragValue::new(&mut form.seconds)
+                        .range(0.1..=36_000.0)
+                        .suffix(" s"),
+                    Until::Samples => DragValue::new(&mut form.samples)
+                        .range(1..=65_536)
+                        .suffix(" samples a pixel"),
+                    Until::Error => DragValue::new(&mut form.error)
+                        .range(0.1..=50.0)
+                        .speed(0.1)
+                        .suffix(" %"),
+                };
+                let field = ui.add_enabled(form.until == until, field);
+                let spoken = format!("{name}, value");
+                field.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &spoken)
+                });
+                ui.end_row();
+            }
             let label = ui.label("File");
             ui.horizontal(|ui| {
                 ui.add(egui::TextEdit::singleline(&mut form.path))
@@ -265,4 +330,31 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
         }
     });
     choice
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_says_what_is_left_whatever_ends_it() {
+        let seconds = Stop {
+            seconds: Some(60.0),
+            ..Stop::default()
+        };
+        assert_eq!(refined(&seconds, 8, 15.0, None), "8 spp · 15 s · 45 s left");
+        let samples = Stop {
+            spp: Some(32),
+            ..Stop::default()
+        };
+        assert_eq!(refined(&samples, 8, 15.0, None), "8 spp · 15 s · 45 s left");
+        let error = Stop {
+            error: Some(0.05),
+            ..Stop::default()
+        };
+        // Half the error takes four times the samples.
+        let told = refined(&error, 8, 15.0, Some(0.1));
+        assert_eq!(told, "8 spp · 15 s · error 10.0 % · 45 s left");
+        assert_eq!(refined(&error, 8, 15.0, None), "8 spp · 15 s");
+    }
 }

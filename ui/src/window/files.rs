@@ -1,17 +1,19 @@
 //! Opening and saving: the system's dialog on its own thread, a typed path where there is
 //! none, and reading and writing on a thread as well.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use egui::{Id, Key, Modal, RichText};
-use pickglass::design::Design;
+use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
+use pickglass::formats::image::Encoding;
 use pickglass::formats::pdf::{self, PdfOptions};
-use pickglass::formats::{self, SaveOptions, atomic};
+use pickglass::formats::{self, SaveOptions, atomic, photo};
 
-use super::session;
+use super::session::{self, Session};
 use super::task::{Outcome, Task};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
@@ -24,19 +26,27 @@ const OPENED: [&str; 15] = [
     "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg",
     "jpeg", "webp",
 ];
+/// Endings of pictures.
+const PICTURES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff"];
 /// Endings a draft is exported with.
 const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
 
 /// What came of a file.
 pub enum FileEvent {
-    /// A design was read, from a file or of the program's own.
-    Opened(Box<Opened>),
+    /// A design was read, from a file or of the program's own, and woven.
+    Opened(Box<Opened>, Box<Session>),
     /// Unsaved work of an earlier run, the copy it is from, and its file if it has one.
     Recovered {
-        design: Box<Design>,
+        session: Box<Session>,
         lost: Option<String>,
         copy: PathBuf,
-        original: Option<PathBuf>,
+    },
+    /// An image, of which more is to be asked than it says.
+    Image(PathBuf),
+    /// A picture to draw by.
+    Reference {
+        path: PathBuf,
+        source: Box<SourceImage>,
     },
     /// This state of the document is in its file.
     Saved { path: PathBuf, state: u64 },
@@ -55,15 +65,22 @@ enum Purpose {
     Save,
     Export,
     Print,
+    Reference,
 }
 
 impl Purpose {
+    /// Whether the file is read, not written.
+    fn reads(self) -> bool {
+        matches!(self, Self::Open | Self::Reference)
+    }
+
     fn title(self) -> &'static str {
         match self {
             Self::Open => "Open by path",
             Self::Save => "Save as",
             Self::Export => "Export the draft",
             Self::Print => "Print to PDF",
+            Self::Reference => "Reference image",
         }
     }
 
@@ -73,6 +90,7 @@ impl Purpose {
             Self::Save => "Path of a .ron file",
             Self::Export => "Path that ends in .wif, .png, .bmp, .tif or .gif",
             Self::Print => "Path of a .pdf file",
+            Self::Reference => "Path of a photograph or a drawing",
         }
     }
 
@@ -82,6 +100,7 @@ impl Purpose {
             Self::Save => "Save",
             Self::Export => "Export",
             Self::Print => "Print",
+            Self::Reference => "Show it",
         }
     }
 
@@ -109,6 +128,11 @@ impl Purpose {
                 .add_filter("PDF", &["pdf"])
                 .set_file_name(proposed)
                 .save_file(),
+            Self::Reference => dialog
+                .set_title("A picture to draw by")
+                .add_filter("Pictures", &PICTURES)
+                .add_filter("All files", &["*"])
+                .pick_file(),
         }
     }
 }
@@ -168,6 +192,11 @@ impl Files {
     /// Asks where to print to.
     pub fn ask_print(&mut self, ctx: &egui::Context, proposed: String) {
         self.ask_for(ctx, Purpose::Print, proposed);
+    }
+
+    /// Asks for a picture to draw by.
+    pub fn ask_reference(&mut self, ctx: &egui::Context) {
+        self.ask_for(ctx, Purpose::Reference, String::new());
     }
 
     fn ask_for(&mut self, ctx: &egui::Context, purpose: Purpose, proposed: String) {
@@ -230,7 +259,30 @@ impl Files {
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
-        self.read(ctx, &name.to_string_lossy(), move || Opened::file(path));
+        let work = move || match is_image(&path) {
+            true => FileEvent::Image(path),
+            false => opened(Opened::file(path)),
+        };
+        self.begin_reading(ctx, &name.to_string_lossy(), work);
+    }
+
+    /// Opens a design that was read already.
+    pub fn open_read(&mut self, ctx: &egui::Context, read: Opened) {
+        let name = read.name().to_owned();
+        self.begin_reading(ctx, &name, move || opened(Ok(read)));
+    }
+
+    /// Reads a picture to draw by.
+    pub fn open_reference(&mut self, ctx: &egui::Context, path: PathBuf) {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
+        let work = move || match photo::load(&path) {
+            Ok(photo) => FileEvent::Reference {
+                path,
+                source: Box::new(photo.source),
+            },
+            Err(error) => FileEvent::OpenFailed(error.to_string()),
+        };
+        self.begin_reading(ctx, &name.to_string_lossy(), work);
     }
 
     /// Opens unsaved work of an earlier run.
@@ -243,16 +295,13 @@ impl Files {
         } = found.clone();
         let work = move || match recovery::load(&path) {
             Ok(recovered) => FileEvent::Recovered {
-                design: Box::new(recovered.design),
+                session: Box::new(Session::unsaved(recovered.design, original)),
                 lost: recovered.lost,
                 copy: path,
-                original,
             },
             Err(error) => FileEvent::OpenFailed(error.to_string()),
         };
-        if let Ok(task) = Task::start(ctx, "reading", work) {
-            self.reading = Some((name, task));
-        }
+        self.begin_reading(ctx, &name, work);
     }
 
     /// The file that is being read or written, if any, in words.
@@ -274,10 +323,15 @@ impl Files {
         name: &str,
         work: impl FnOnce() -> anyhow::Result<Opened> + Send + 'static,
     ) {
-        let work = move || match work() {
-            Ok(opened) => FileEvent::Opened(Box::new(opened)),
-            Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
-        };
+        self.begin_reading(ctx, name, move || opened(work()));
+    }
+
+    fn begin_reading(
+        &mut self,
+        ctx: &egui::Context,
+        name: &str,
+        work: impl FnOnce() -> FileEvent + Send + 'static,
+    ) {
         // A newer choice replaces one that is still being read.
         if let Ok(task) = Task::start(ctx, "reading", work) {
             self.reading = Some((name.to_owned(), task));
@@ -375,6 +429,7 @@ impl Files {
             Purpose::Save => self.chosen = Some((purpose, with_ending(path, "ron"))),
             Purpose::Export => self.chosen = Some((purpose, with_ending(path, "wif"))),
             Purpose::Print => self.chosen = Some((purpose, with_ending(path, "pdf"))),
+            Purpose::Reference => self.open_reference(ctx, path),
         }
         ctx.request_repaint();
     }
@@ -392,7 +447,7 @@ impl Files {
         if done && !path.as_os_str().is_empty() {
             let purpose = typed.purpose;
             // Ask once before an existing file is written over.
-            if purpose != Purpose::Open && path.exists() && typed.over.as_deref() != Some(&*path) {
+            if !purpose.reads() && path.exists() && typed.over.as_deref() != Some(&*path) {
                 typed.over = Some(path);
                 return;
             }
@@ -436,6 +491,25 @@ fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &m
         *done |= ui.add_enabled(ready, egui::Button::new(name)).clicked();
         *close |= ui.button("Cancel").clicked();
     });
+}
+
+/// What was opened, woven, or why not.
+fn opened(read: anyhow::Result<Opened>) -> FileEvent {
+    match read {
+        Ok(opened) => {
+            let session = Box::new(Session::of(&opened));
+            FileEvent::Opened(Box::new(opened), session)
+        }
+        Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
+    }
+}
+
+/// Whether a file is an image by its first bytes. One that cannot be read is none: opening
+/// it says why.
+fn is_image(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut head));
+    read.is_ok() && Encoding::of(&head).is_some()
 }
 
 /// Writes a design as pages.

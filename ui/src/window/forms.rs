@@ -20,6 +20,8 @@ pub enum Form {
         picks: u32,
     },
     Repeat(Lattice),
+    /// Repeats across and along that become one.
+    Tile([u32; 2]),
     Loom {
         before: Loom,
         wanted: Loom,
@@ -92,6 +94,7 @@ impl Form {
         match self {
             Self::Size { .. } => "Resize",
             Self::Repeat(_) => "Repeat",
+            Self::Tile(_) => "Repeat more often",
             Self::Loom { .. } => "Loom",
             Self::Words { .. } => "Name and notes",
             Self::Stamp(_) => "Stamp a weave",
@@ -106,6 +109,15 @@ impl Form {
         let wrong = match self {
             Self::Size { ends, picks } => size_ui(ui, ends, picks),
             Self::Repeat(lattice) => repeat_ui(ui, lattice),
+            Self::Tile(copies) => {
+                note(ui, "So many repeats become one, so that they can differ.");
+                let [across, along] = copies;
+                egui::Grid::new("tile").num_columns(2).show(ui, |ui| {
+                    number(ui, "Across", across, 1 << 10);
+                    number(ui, "Along", along, 1 << 10);
+                });
+                None
+            }
             Self::Loom { wanted, .. } => {
                 loom_ui(ui, wanted);
                 None
@@ -145,6 +157,10 @@ impl Form {
                 picks: *picks,
             }],
             Self::Repeat(lattice) => vec![Edit::SetLattice(*lattice)],
+            Self::Tile([across, along]) => vec![Edit::Tile {
+                across: *across,
+                along: *along,
+            }],
             Self::Loom { before, wanted } => loom_edits(*before, *wanted),
             Self::Words { name, notes } => vec![
                 Edit::Rename(name.trim().to_owned()),

@@ -1,14 +1,21 @@
 //! What is open: designs that come and go, what the threads finished, and the questions in
 //! between.
 
+use std::path::{Path, PathBuf};
+
 use egui::ViewportCommand;
+use pickglass::design::SourceImage;
 use pickglass::edit::Clip;
 
 use super::app::App;
 use super::asking::{Answer, Next};
+use super::draft::reference::Reference;
 use super::export::Exported;
 use super::files::{FileEvent, Writing};
-use super::session::Session;
+use super::import::{self, Import};
+use super::panes::Pane;
+use super::session::{self, Session};
+use super::settings::KeptReference;
 use super::toasts::Grade;
 use super::volume;
 use crate::command_table::Tool;
@@ -16,7 +23,7 @@ use crate::opened::Opened;
 
 impl App {
     /// Opens a design.
-    pub(super) fn take_design(&mut self, opened: &Opened) {
+    pub(super) fn take_design(&mut self, opened: &Opened, session: Session) {
         for warning in &opened.warnings {
             self.warn(warning.clone(), "The design was opened.");
         }
@@ -24,15 +31,23 @@ impl App {
             self.settings.opened(path);
             self.write_settings();
         }
-        self.show_session(Some(Session::of(opened)));
+        self.show_session(Some(session));
     }
 
     /// Shows another document, or the start page; the copy of what was open before is not
     /// needed any more.
     pub(super) fn show_session(&mut self, session: Option<Session>) {
         self.autosave.leave();
+        self.remember_reference();
         self.session = session;
         self.draft.forget();
+        let path = self.session.as_ref().and_then(|s| s.path.as_deref());
+        if let Some(kept) = self.settings.reference_of(path)
+            && kept.image.exists()
+        {
+            let image = kept.image.clone();
+            self.files.open_reference(&self.ctx, image);
+        }
         self.preview.forget();
         self.asking.derive_always = false;
     }
@@ -52,6 +67,7 @@ impl App {
                 let text = format!("Wrote {}", path.display());
                 let kept = format!("{} × {}, {} spp", report.width, report.height, report.spp);
                 self.say(Grade::Done, text, kept);
+                self.toasts.made(&path);
             }
             Some(Exported::Cancelled) => {
                 self.say(
@@ -72,6 +88,7 @@ impl App {
         match self.volume.poll() {
             Some(volume::Exported::Written { path, about }) => {
                 self.say(Grade::Done, format!("Wrote {}", path.display()), about);
+                self.toasts.made(&path);
             }
             Some(volume::Exported::Cancelled) => {
                 self.say(
@@ -96,21 +113,82 @@ impl App {
         }
     }
 
+    /// Shows what is asked of an image, and goes on with the answer.
+    pub(super) fn import_ui(&mut self, ctx: &egui::Context) {
+        let answer = self.import.as_mut().and_then(|import| import.show(ctx));
+        match answer {
+            None => return,
+            Some(import::Answer::Open(opened)) => self.files.open_read(ctx, *opened),
+            Some(import::Answer::Posterise(path)) => self.posterise(ctx, &path),
+            Some(import::Answer::Closed) => {}
+        }
+        self.import = None;
+    }
+
+    /// Takes a photograph to be posterised, beside what is open or a new design.
+    fn posterise(&mut self, ctx: &egui::Context, path: &Path) {
+        if self.session.is_none() {
+            match session::blank() {
+                Ok(blank) => self.take_design(&blank, Session::of(&blank)),
+                Err(error) => return self.say(Grade::Error, format!("{error:#}"), ""),
+            }
+        }
+        self.panes.posterise(ctx, path);
+        self.layout.bring(Pane::Posterise);
+    }
+
+    /// Shows a picture to draw by, as it lay when it was seen last.
+    fn take_reference(&mut self, ctx: &egui::Context, path: PathBuf, source: &SourceImage) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let before = self.draft.reference.take();
+        let mut reference = Reference::new(ctx, path, source);
+        let kept = self.settings.reference_of(session.path.as_deref());
+        if let Some(kept) = kept.filter(|kept| kept.image == reference.path) {
+            reference.lie(kept.opacity, kept.stretched);
+            reference.window_open = false;
+        } else if let Some(before) = before {
+            reference.lie(before.opacity, before.stretched);
+        }
+        self.draft.reference = Some(reference);
+    }
+
+    /// Remembers by which picture the open design is drawn.
+    pub(super) fn remember_reference(&mut self) {
+        let path = self.session.as_ref().and_then(|s| s.path.as_deref());
+        if let Some(design) = path {
+            let reference = self.draft.reference.as_ref();
+            self.settings.draws_by(
+                design,
+                reference.map(|reference| KeptReference {
+                    design: design.to_owned(),
+                    image: reference.path.clone(),
+                    opacity: reference.opacity,
+                    stretched: reference.stretched,
+                }),
+            );
+        }
+    }
+
     pub(super) fn file_event(&mut self, ctx: &egui::Context, event: FileEvent) {
         match event {
-            FileEvent::Opened(opened) => self.take_design(&opened),
+            FileEvent::Opened(opened, session) => self.take_design(&opened, *session),
             FileEvent::Recovered {
-                design,
+                session,
                 lost,
                 copy,
-                original,
             } => {
-                self.show_session(Some(Session::unsaved(*design, original)));
+                self.show_session(Some(*session));
                 self.autosave.reopened(copy);
                 match lost {
                     Some(lost) => self.warn(lost, "Everything before that was recovered."),
                     None => self.say(Grade::Done, "Recovered.", "Save it to keep it."),
                 }
+            }
+            FileEvent::Image(path) => self.import = Some(Import::new(path)),
+            FileEvent::Reference { path, source } => {
+                self.take_reference(ctx, path, &source);
             }
             FileEvent::OpenFailed(error) => {
                 let kept = match &self.session {
@@ -137,10 +215,12 @@ impl App {
                     format!("Wrote {}", path.display()),
                     "Nothing was left out.",
                 );
+                self.toasts.made(&path);
             }
             FileEvent::Exported { path, lost } => {
                 let text = format!("Wrote {}, without {}", path.display(), lost.join("; "));
                 self.warn(text, "The design itself is as it was.");
+                self.toasts.made(&path);
             }
             FileEvent::SaveFailed(error) => {
                 self.asking.after_save = None;

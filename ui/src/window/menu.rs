@@ -8,6 +8,8 @@ use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
 
+use super::cloth::sheet::Kind as SheetKind;
+use super::panes::Pane;
 use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
 use crate::tokens::{self, Palette};
 
@@ -26,8 +28,6 @@ pub struct Situation<'s> {
     pub undo: Option<String>,
     pub redo: Option<String>,
     pub selection: bool,
-    /// Whether there are colourways to change to.
-    pub colourways: bool,
     pub view: View,
     pub light: &'s LightChoice,
     pub paused: bool,
@@ -39,6 +39,13 @@ pub struct Situation<'s> {
     pub ghosts: bool,
     pub navigator: bool,
     pub symmetry: [bool; 2],
+    /// Painting goes on in steps.
+    pub steps: bool,
+    /// The reference is shown; `None` = there is none.
+    pub reference: Option<bool>,
+    /// Colourways beside the one in use.
+    pub colourways: usize,
+    pub sheet: Option<SheetKind>,
     pub recent: &'s [PathBuf],
 }
 
@@ -56,13 +63,22 @@ impl Situation<'_> {
             | Command::Shortcuts => true,
             Command::Undo => self.undo.is_some(),
             Command::Redo => self.redo.is_some(),
-            Command::NextColourway => self.open && self.colourways,
             Command::Cut
             | Command::Copy
             | Command::Clear
             | Command::Deselect
             | Command::FillSelection
             | Command::CropToSelection => self.open && self.selection,
+            Command::NextColourway
+            | Command::PreviousColourway
+            | Command::ContactSheet
+            | Command::SideBySide => self.open && self.colourways > 0,
+            Command::Colourway(place) => {
+                self.open && self.colourways > 0 && usize::from(place) <= self.colourways + 1
+            }
+            Command::ReferenceShown | Command::ReferenceFit => {
+                self.open && self.reference.is_some()
+            }
             _ => self.open,
         }
     }
@@ -81,6 +97,10 @@ impl Situation<'_> {
             Command::Navigator => self.navigator,
             Command::SymmetryAcross => self.symmetry[0],
             Command::SymmetryAlong => self.symmetry[1],
+            Command::SymmetrySteps => self.steps,
+            Command::ReferenceShown => self.reference == Some(true),
+            Command::ContactSheet => self.sheet == Some(SheetKind::All),
+            Command::SideBySide => self.sheet == Some(SheetKind::Two),
             _ => false,
         }
     }

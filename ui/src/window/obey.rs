@@ -1,10 +1,13 @@
 //! What the commands of menus, keys and palette do.
 
 use egui::ViewportCommand;
+use pickglass::edit::Edit;
 use pickglass::still::LightChoice;
 
 use super::app::App;
 use super::asking::Next;
+use super::cloth::sheet::Kind as SheetKind;
+use super::panes::Pane;
 use crate::command_table::Command;
 
 impl App {
@@ -77,6 +80,12 @@ impl App {
             {
                 self.draft.obey(command);
             }
+            Command::Reference => self.files.ask_reference(ctx),
+            Command::NextColourway => self.colourway_beside(1),
+            Command::PreviousColourway => self.colourway_beside(-1),
+            Command::Colourway(place) => self.use_colourway(usize::from(place) - 1),
+            Command::ContactSheet => self.show_sheet(SheetKind::All),
+            Command::SideBySide => self.show_sheet(SheetKind::Two),
             Command::Use(tool) => self.draft.take_tool(ctx, tool),
             Command::Glass => self.preview.pin_glass(ctx),
             Command::SwapColours => {
@@ -89,6 +98,34 @@ impl App {
                 }
             }
         }
+    }
+
+    /// Weaves in the colourway so many places further by name, round the list.
+    fn colourway_beside(&mut self, by: isize) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let order = session.document.design().colourway_order();
+        let own = order.iter().position(|(_, place)| place.is_none());
+        let at = own.unwrap_or(0) as isize + by;
+        self.use_colourway(at.rem_euclid(order.len().max(1) as isize) as usize);
+    }
+
+    /// Weaves in the colourway of this place by name, from 0.
+    fn use_colourway(&mut self, place: usize) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let order = session.document.design().colourway_order();
+        if let Some((_, Some(colourway))) = order.get(place) {
+            self.edit(Edit::UseColourway(*colourway));
+        }
+    }
+
+    /// Shows the colourways in the cloth view, or the cloth alone again.
+    fn show_sheet(&mut self, kind: SheetKind) {
+        self.preview.toggle_sheet(kind);
+        self.layout.bring(Pane::Cloth);
     }
 
     pub(super) fn step_back(&mut self) {
@@ -107,6 +144,16 @@ impl App {
             Command::Navigator => &mut show.navigator,
             Command::SymmetryAcross => &mut symmetry[0],
             Command::SymmetryAlong => &mut symmetry[1],
+            Command::SymmetrySteps => &mut self.draft.steps.on,
+            Command::ReferenceShown | Command::ReferenceFit => {
+                let Some(reference) = &mut self.draft.reference else {
+                    return true;
+                };
+                match command {
+                    Command::ReferenceShown => &mut reference.shown,
+                    _ => &mut reference.window_open,
+                }
+            }
             Command::Arrange(arrangement) => {
                 show.arrangement = arrangement;
                 self.draft.obey(Command::Fit);

@@ -12,6 +12,7 @@ use super::cloth::bar::{self, Says};
 use super::cloth::compare::Compare;
 use super::cloth::glass::{self, Glass};
 use super::cloth::lamp;
+use super::cloth::sheet::{Kind as SheetKind, Sheet};
 use super::cloth_pane::{ClothPane, KEY_STEP};
 use super::laid::Laid;
 use super::toasts::Grade;
@@ -66,6 +67,8 @@ pub struct Preview {
     glass: Glass,
     compare: Option<Compare>,
     calibrating: bool,
+    /// The colourways in the place of the cloth.
+    sheet: Option<Sheet>,
     /// `None` until the pane's size is known, or when the view is to be set anew.
     cloth_view: Option<ClothView>,
     /// Whether a view set anew shows the whole repeat, or the view's usual width.
@@ -100,6 +103,7 @@ impl Preview {
             glass: Glass::default(),
             compare: None,
             calibrating: false,
+            sheet: None,
             cloth_view: None,
             fit: false,
             effects: settings.effects,
@@ -120,8 +124,22 @@ impl Preview {
         self.cloth_view = None;
         self.pane.forget();
         self.compare = None;
+        self.sheet = None;
         self.asked = None;
         self.laid = None;
+    }
+
+    /// Shows the colourways in the place of the cloth, or the cloth alone again.
+    pub fn toggle_sheet(&mut self, kind: SheetKind) {
+        self.sheet = match self.sheet_kind() {
+            Some(shown) if shown == kind => None,
+            _ => Some(Sheet::new(kind)),
+        };
+    }
+
+    /// How the colourways are shown, if they are.
+    pub fn sheet_kind(&self) -> Option<SheetKind> {
+        self.sheet.as_ref().map(|sheet| sheet.kind)
     }
 
     /// Whether keys such as `F` mean the cloth.
@@ -246,6 +264,19 @@ impl Preview {
             Some(view) => view,
             None => self.initial_view(pane, &laid),
         };
+        if document.design().colourways().is_empty() {
+            self.sheet = None;
+        }
+        if let Some(mut sheet) = self.sheet.take() {
+            let still = self.look();
+            self.in_use = ui.rect_contains_pointer(pane);
+            if sheet.show(ui, document, &mut view, &still, actions) {
+                self.sheet = Some(sheet);
+            }
+            self.cloth_view = Some(view);
+            self.laid = Some(laid);
+            return;
+        }
         let description = format!("Cloth of {}", laid.design.name);
         let straight = self.eye.is_none() && matches!(self.view, View::Face | View::Back);
         let marked = (self.marked.filter(|_| straight))
@@ -373,6 +404,21 @@ impl Preview {
         view
     }
 
+    /// From where the cloth is looked at, in which light and how exactly.
+    fn look(&self) -> StillRequest {
+        StillRequest {
+            view: self.view,
+            eye: self.eye.map(|[azimuth, elevation]| Heading {
+                azimuth: azimuth.round() as i16,
+                elevation: elevation.round() as i16,
+            }),
+            light: self.light.clone(),
+            effects: self.effects.clone(),
+            dials: self.dials.clone(),
+            ..StillRequest::default()
+        }
+    }
+
     /// Asks for a new picture when what is to be seen has changed.
     fn ask_worker(&mut self, pane: Rect, density: f32, laid: &Laid, revision: u64) {
         let Some(view) = self.cloth_view else {
@@ -385,17 +431,9 @@ impl Preview {
         let still = StillRequest {
             width: ((pixels.x * shrink) as u32).max(1),
             height: ((pixels.y * shrink) as u32).max(1),
-            view: self.view,
-            eye: self.eye.map(|[azimuth, elevation]| Heading {
-                azimuth: azimuth.round() as i16,
-                elevation: elevation.round() as i16,
-            }),
             width_mm: Some(view.width_mm(pane)),
             centre_mm: Some(view.centre_mm),
-            light: self.light.clone(),
-            effects: self.effects.clone(),
-            dials: self.dials.clone(),
-            ..StillRequest::default()
+            ..self.look()
         };
         let wanted = (revision, still);
         if self.asked.as_ref() == Some(&wanted) {

@@ -32,6 +32,17 @@ pub struct Settings {
     pub navigator: bool,
     /// Millimetres a point of the screen, where a card was held against it.
     pub mm_per_point: Option<f32>,
+    /// Newest first.
+    pub references: Vec<KeptReference>,
+}
+
+/// By which picture a design is drawn: only its path is kept, beside that of the design.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KeptReference {
+    pub design: PathBuf,
+    pub image: PathBuf,
+    pub opacity: f32,
+    pub stretched: bool,
 }
 
 impl Default for Settings {
@@ -46,6 +57,7 @@ impl Default for Settings {
             long_floats: false,
             navigator: false,
             mm_per_point: None,
+            references: Vec::new(),
         }
     }
 }
@@ -57,6 +69,21 @@ impl Settings {
         self.recent.retain(|known| *known != path);
         self.recent.insert(0, path);
         self.recent.truncate(MOST_RECENT);
+    }
+
+    /// The picture that the design in a file is drawn by.
+    pub fn reference_of(&self, design: Option<&Path>) -> Option<&KeptReference> {
+        let design = design?;
+        (self.references.iter()).find(|kept| kept.design == design)
+    }
+
+    /// Remembers by which picture the design in a file is drawn, if by any.
+    pub fn draws_by(&mut self, design: &Path, reference: Option<KeptReference>) {
+        self.references.retain(|kept| kept.design != design);
+        if let Some(reference) = reference {
+            self.references.insert(0, reference);
+            self.references.truncate(MOST_RECENT);
+        }
     }
 }
 

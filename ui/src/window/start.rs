@@ -1,25 +1,24 @@
-//! The start page: presets as woven thumbnails, recent files, and where to drop a file.
+//! The start page: what to begin with, unsaved work, recent files and presets as woven
+//! thumbnails, and where to drop a file.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use egui::{Color32, Rect, RichText, Sense, TextureHandle, TextureOptions, vec2};
-use pickglass::design::{Colouring, Design, SwatchWindow, swatch};
+use egui::{Color32, Rect, RichText, Sense, Stroke, vec2};
 use pickglass::edit::recovery::Found;
 use pickglass::formats::presets;
 
 use super::autosave::ago;
 use super::focus;
-use super::task::{Outcome, Task};
+use super::thumbs::{Source, Thumb, Thumbs};
 use crate::command_table::{Command, row_of};
 use crate::tokens::{self, Palette};
 
 /// Side of a thumbnail, points.
 const SIDE: f32 = 148.0;
-/// Pixels along the side of a thumbnail's picture.
-const PIXELS: usize = 296;
-/// A crossing is at most this many pixels of a thumbnail.
-const LARGEST_CELL: usize = 6;
+/// Side of the small picture beside a file, points.
+const SMALL: f32 = 10.0 * tokens::GRID;
+/// Recent files that are shown.
+const MOST_RECENT: usize = 5;
 
 /// What was chosen.
 pub enum Choice {
@@ -30,21 +29,10 @@ pub enum Choice {
     Discard(PathBuf),
 }
 
-/// A preset's picture and what is written below it.
-struct Thumbnail {
-    name: &'static str,
-    title: String,
-    caption: String,
-    texture: TextureHandle,
-}
-
-type Drawn = Vec<(&'static str, Arc<Design>, Vec<[u8; 4]>)>;
-
 /// The start page's state.
 #[derive(Default)]
 pub struct StartPage {
-    drawing: Option<Task<Drawn>>,
-    thumbnails: Option<Vec<Thumbnail>>,
+    thumbs: Thumbs,
 }
 
 impl StartPage {
@@ -55,7 +43,7 @@ impl StartPage {
         recent: &[PathBuf],
         found: &[Found],
     ) -> Option<Choice> {
-        self.draw(ui.ctx());
+        self.draw(ui.ctx(), recent, found);
         let mut choice = None;
         egui::ScrollArea::vertical()
             .auto_shrink([false, false])
@@ -65,60 +53,128 @@ impl StartPage {
                     .inner_margin(egui::Margin::symmetric(2 * tokens::PAD as i8, 0))
                     .show(ui, |ui| {
                         choice = begin_ui(ui);
-                        choice = recover_ui(ui, found).or(choice.take());
-                        choice = recent_ui(ui, recent).or(choice.take());
+                        choice = self.recover_ui(ui, found).or(choice.take());
+                        choice = self.recent_ui(ui, recent).or(choice.take());
                         choice = self.presets_ui(ui).or(choice.take());
                     });
             });
         choice
     }
 
-    /// Has the thumbnails drawn, on a thread the first time.
-    fn draw(&mut self, ctx: &egui::Context) {
-        if self.thumbnails.is_some() {
-            return;
+    /// Has everything drawn that is on the page, on a thread.
+    fn draw(&mut self, ctx: &egui::Context, recent: &[PathBuf], found: &[Found]) {
+        for name in presets::names() {
+            self.thumbs.ask(ctx, Source::Preset(name));
         }
-        let Some(drawing) = &self.drawing else {
-            self.drawing = Task::start(ctx, "thumbnails", draw_all).ok();
-            return;
-        };
-        match drawing.poll() {
-            Outcome::Working => {}
-            Outcome::Lost => self.thumbnails = Some(Vec::new()),
-            Outcome::Ready(drawn) => {
-                let load = |(name, design, pixels): (&'static str, Arc<Design>, Vec<[u8; 4]>)| {
-                    let image = egui::ColorImage::from_rgba_unmultiplied(
-                        [PIXELS; 2],
-                        pixels.as_flattened(),
-                    );
-                    Thumbnail {
-                        name,
-                        title: design.name.clone(),
-                        caption: format!("{} × {}", design.ends(), design.picks()),
-                        texture: ctx.load_texture(name, image, TextureOptions::LINEAR),
-                    }
-                };
-                self.thumbnails = Some(drawn.into_iter().map(load).collect());
-            }
+        for copy in found {
+            self.thumbs.ask(ctx, Source::Copy(copy.path.clone()));
         }
+        for path in recent.iter().take(MOST_RECENT) {
+            self.thumbs.ask(ctx, Source::File(path.clone()));
+        }
+        self.thumbs.poll(ctx);
     }
 
     fn presets_ui(&self, ui: &mut egui::Ui) -> Option<Choice> {
-        ui.label(RichText::new("Presets").text_style(egui::TextStyle::Heading));
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Presets").text_style(egui::TextStyle::Heading));
+            if self.thumbs.is_working() {
+                ui.spinner();
+            }
+        });
         ui.add_space(tokens::GRID);
-        let Some(thumbnails) = &self.thumbnails else {
-            ui.spinner();
-            return None;
-        };
         let mut choice = None;
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(tokens::PAD, tokens::PAD);
-            for thumbnail in thumbnails {
-                if thumbnail_ui(ui, thumbnail) {
-                    choice = Some(Choice::Preset(thumbnail.name));
+            for name in presets::names() {
+                let thumb = self.thumbs.get(&Source::Preset(name));
+                if thumbnail_ui(ui, name, thumb) {
+                    choice = Some(Choice::Preset(name));
                 }
             }
         });
+        choice
+    }
+
+    /// The small picture beside a file; an empty field until there is one.
+    fn small_ui(&self, ui: &mut egui::Ui, source: &Source) {
+        let (rect, _) = ui.allocate_exact_size(vec2(SMALL, SMALL), Sense::hover());
+        let palette = Palette::current(ui);
+        ui.painter().rect_filled(rect, 0.0, palette.deep);
+        if let Some(thumb) = self.thumbs.get(source) {
+            let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+            (ui.painter()).image(thumb.texture.id(), rect, whole, Color32::WHITE);
+        }
+    }
+
+    /// Work that an earlier run left unsaved.
+    fn recover_ui(&self, ui: &mut egui::Ui, found: &[Found]) -> Option<Choice> {
+        if found.is_empty() {
+            return None;
+        }
+        let palette = Palette::current(ui);
+        let mut choice = None;
+        ui.label(RichText::new("Unsaved work").text_style(egui::TextStyle::Heading));
+        ui.label(RichText::new("Pickglass ended before these were saved.").color(palette.quiet));
+        ui.add_space(tokens::GRID);
+        for copy in found {
+            ui.horizontal(|ui| {
+                self.small_ui(ui, &Source::Copy(copy.path.clone()));
+                let name = match copy.name.trim() {
+                    "" => "untitled",
+                    name => name,
+                };
+                if ui.button(format!("Recover {name}")).clicked() {
+                    choice = Some(Choice::Recover(copy.clone()));
+                }
+                let discard = ui.button("Discard");
+                discard.widget_info(|| {
+                    let label = format!("Discard {name}");
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+                });
+                if discard.clicked() {
+                    choice = Some(Choice::Discard(copy.path.clone()));
+                }
+                let from = match &copy.original {
+                    Some(path) => format!("{} · {}", ago(copy.time), path.display()),
+                    None => format!("{} · in no file yet", ago(copy.time)),
+                };
+                ui.add(egui::Label::new(RichText::new(from).color(palette.quiet)).truncate());
+            });
+        }
+        ui.add_space(2.0 * tokens::PAD);
+        choice
+    }
+
+    fn recent_ui(&self, ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
+        if recent.is_empty() {
+            return None;
+        }
+        let mut choice = None;
+        ui.label(RichText::new("Recent files").text_style(egui::TextStyle::Heading));
+        ui.add_space(tokens::GRID);
+        let quiet = Palette::current(ui).quiet;
+        for path in recent.iter().take(MOST_RECENT) {
+            ui.horizontal(|ui| {
+                self.small_ui(ui, &Source::File(path.clone()));
+                let name = path
+                    .file_name()
+                    .unwrap_or(path.as_os_str())
+                    .to_string_lossy();
+                let there = path.exists();
+                if ui.add_enabled(there, egui::Button::new(name)).clicked() {
+                    choice = Some(Choice::Recent(path.clone()));
+                }
+                let folder = path.parent().unwrap_or(Path::new("")).display().to_string();
+                let note = if there {
+                    folder
+                } else {
+                    format!("{folder} (not there any more)")
+                };
+                ui.add(egui::Label::new(RichText::new(note).color(quiet)).truncate());
+            });
+        }
+        ui.add_space(2.0 * tokens::PAD);
         choice
     }
 }
@@ -138,113 +194,43 @@ fn begin_ui(ui: &mut egui::Ui) -> Option<Choice> {
                 choice = Some(Choice::Command(command));
             }
         }
-        ui.label(RichText::new("or drop a design, a draft or an image here").color(quiet));
     });
+    ui.add_space(tokens::GAP);
+    drop_ui(ui);
     ui.add_space(2.0 * tokens::PAD);
     choice
 }
 
-/// Work that an earlier run left unsaved.
-fn recover_ui(ui: &mut egui::Ui, found: &[Found]) -> Option<Choice> {
-    if found.is_empty() {
-        return None;
-    }
-    let palette = Palette::current(ui);
-    let mut choice = None;
-    ui.label(RichText::new("Unsaved work").text_style(egui::TextStyle::Heading));
-    ui.label(RichText::new("Pickglass ended before these were saved.").color(palette.quiet));
-    ui.add_space(tokens::GRID);
-    for copy in found {
-        ui.horizontal(|ui| {
-            let name = match copy.name.trim() {
-                "" => "untitled",
-                name => name,
-            };
-            if ui.button(format!("Recover {name}")).clicked() {
-                choice = Some(Choice::Recover(copy.clone()));
-            }
-            let discard = ui.button("Discard");
-            discard.widget_info(|| {
-                let label = format!("Discard {name}");
-                egui::WidgetInfo::labeled(egui::Role::Button, true, label)
-            });
-            if discard.clicked() {
-                choice = Some(Choice::Discard(copy.path.clone()));
-            }
-            let from = match &copy.original {
-                Some(path) => format!("{} · {}", ago(copy.time), path.display()),
-                None => format!("{} · in no file yet", ago(copy.time)),
-            };
-            ui.add(egui::Label::new(RichText::new(from).color(palette.quiet)).truncate());
-        });
-    }
-    ui.add_space(2.0 * tokens::PAD);
-    choice
-}
-
-fn recent_ui(ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
-    if recent.is_empty() {
-        return None;
-    }
-    let mut choice = None;
-    ui.label(RichText::new("Recent files").text_style(egui::TextStyle::Heading));
-    ui.add_space(tokens::GRID);
-    let quiet = Palette::current(ui).quiet;
-    for path in recent.iter().take(5) {
-        ui.horizontal(|ui| {
-            let name = path
-                .file_name()
-                .unwrap_or(path.as_os_str())
-                .to_string_lossy();
-            let there = path.exists();
-            if ui.add_enabled(there, egui::Button::new(name)).clicked() {
-                choice = Some(Choice::Recent(path.clone()));
-            }
-            let folder = path.parent().unwrap_or(Path::new("")).display().to_string();
-            let note = if there {
-                folder
-            } else {
-                format!("{folder} (not there any more)")
-            };
-            ui.add(egui::Label::new(RichText::new(note).color(quiet)).truncate());
-        });
-    }
-    ui.add_space(2.0 * tokens::PAD);
-    choice
-}
-
-fn thumbnail_ui(ui: &mut egui::Ui, thumbnail: &Thumbnail) -> bool {
+/// A preset's picture and what is written below it.
+fn thumbnail_ui(ui: &mut egui::Ui, name: &str, thumb: Option<&Thumb>) -> bool {
     let palette = Palette::current(ui);
     let size = vec2(SIDE, SIDE + 10.0 * tokens::GRID);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, true, thumbnail.title.as_str())
-    });
+    let title = thumb.map_or(name, |thumb| thumb.title.as_str());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, title));
     let painter = ui.painter();
     let lit = response.hovered() || response.has_focus();
     let fill = if lit { palette.lit } else { palette.raised };
     painter.rect_filled(rect, tokens::RADIUS, fill);
     let picture = Rect::from_min_size(rect.min, vec2(SIDE, SIDE));
-    let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-    painter.image(
-        thumbnail.texture.id(),
-        picture.shrink(tokens::GRID),
-        whole,
-        Color32::WHITE,
-    );
+    if let Some(thumb) = thumb {
+        let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+        let place = picture.shrink(tokens::GRID);
+        painter.image(thumb.texture.id(), place, whole, Color32::WHITE);
+    }
     let text = picture.left_bottom() + vec2(tokens::GAP, 0.0);
     let clipped = painter.with_clip_rect(rect);
     clipped.text(
         text,
         egui::Align2::LEFT_TOP,
-        &thumbnail.title,
+        title,
         egui::TextStyle::Body.resolve(ui.style()),
         palette.text,
     );
     clipped.text(
         text + vec2(0.0, 4.5 * tokens::GRID),
         egui::Align2::LEFT_TOP,
-        &thumbnail.caption,
+        thumb.map_or("", |thumb| thumb.caption.as_str()),
         egui::TextStyle::Small.resolve(ui.style()),
         palette.quiet,
     );
@@ -256,32 +242,37 @@ fn thumbnail_ui(ui: &mut egui::Ui, thumbnail: &Thumbnail) -> bool {
         .clicked()
 }
 
-fn draw_all() -> Drawn {
-    let draw = |name: &'static str| {
-        let design = presets::design(name)?.ok()?;
-        let pixels = draw_one(&design);
-        Some((name, Arc::new(design), pixels))
+/// Where a file may be dropped: anywhere, but a place to aim at is easier to find.
+fn drop_ui(ui: &mut egui::Ui) {
+    let palette = Palette::current(ui);
+    let width = ui.available_width().min(tokens::TOAST_WIDTH);
+    let (rect, _) = ui.allocate_exact_size(vec2(width, 14.0 * tokens::GRID), Sense::hover());
+    let hovering = ui.input(|input| !input.raw.hovered_files.is_empty());
+    let colour = if hovering {
+        tokens::ACCENT
+    } else {
+        palette.quiet
     };
-    presets::names().filter_map(draw).collect()
+    let corners = [
+        rect.left_top(),
+        rect.right_top(),
+        rect.right_bottom(),
+        rect.left_bottom(),
+        rect.left_top(),
+    ];
+    let stroke = Stroke::new(1.0, colour);
+    let dashes = egui::Shape::dashed_line(&corners, stroke, 2.0 * tokens::GRID, tokens::GRID);
+    ui.painter().extend(dashes);
+    let text = egui::Label::new(
+        RichText::new("Drop a design, a draft or an image here").color(palette.quiet),
+    );
+    ui.put(rect, text);
 }
 
-/// As much of the drawdown as fits, in cells of whole pixels; large designs from afar.
-fn draw_one(design: &Design) -> Vec<[u8; 4]> {
-    let drawdown = design.weave();
-    let longest = design.ends().max(design.picks()) as usize;
-    let cell = (PIXELS / longest.max(1)).clamp(1, LARGEST_CELL);
-    let level = (0..16)
-        .find(|level| longest >> level <= PIXELS)
-        .unwrap_or(16);
-    let side = PIXELS.div_ceil(cell);
-    let window = SwatchWindow {
-        end: 0,
-        pick: 0,
-        size: [side, side],
-        level: level as u32,
-    };
-    let small = swatch(design, &drawdown, window, Colouring::Yarns);
-    (0..PIXELS * PIXELS)
-        .map(|at| small[(at / PIXELS / cell) * side + at % PIXELS / cell])
-        .collect()
+#[cfg(test)]
+impl StartPage {
+    /// Whether every picture is there.
+    pub fn is_drawn(&self) -> bool {
+        !self.thumbs.is_working()
+    }
 }

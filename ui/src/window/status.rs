@@ -84,6 +84,9 @@ fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
     if let Phase::Failed(_) = status.phase {
         ui.label(RichText::new("Error: not drawn").color(palette.error));
         icons::show(ui, Grade::Error, palette.error);
+    } else if let Phase::AtSight(why) = status.phase {
+        ui.label("First sight · look closer to refine")
+            .on_hover_text(why);
     } else if let Some(shown) = status.shown {
         ui.label(quality(shown, status));
     }

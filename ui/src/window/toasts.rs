@@ -1,5 +1,6 @@
 //! Messages: what happened and what was kept. Errors stay until they are dismissed.
 
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use egui::{Align2, Area, Frame, Id, Label, Order, RichText, Stroke, vec2};
@@ -31,6 +32,8 @@ struct Toast {
     text: String,
     kept: String,
     until: Option<Instant>,
+    /// A file that came of it.
+    made: Option<PathBuf>,
 }
 
 /// The messages on the screen.
@@ -52,9 +55,17 @@ impl Toasts {
             text,
             kept: kept.into(),
             until: (grade == Grade::Done).then(|| Instant::now() + STAY),
+            made: None,
         });
         if self.0.len() > MOST {
             self.0.remove(0);
+        }
+    }
+
+    /// Lets the newest message show a file that came of the work.
+    pub fn made(&mut self, path: &Path) {
+        if let Some(toast) = self.0.last_mut() {
+            toast.made = Some(path.to_owned());
         }
     }
 
@@ -80,6 +91,28 @@ impl Toasts {
     }
 }
 
+/// Opens a file with the program that the system has for it; a failure is a line in the log.
+fn open_with_system(path: &Path) {
+    let program = if cfg!(target_os = "macos") {
+        "open"
+    } else if cfg!(target_os = "windows") {
+        "explorer"
+    } else {
+        "xdg-open"
+    };
+    let started = std::process::Command::new(program)
+        .arg(path)
+        .stdin(std::process::Stdio::null())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn();
+    match started {
+        // Somebody has to wait for it, so that nothing is left of it once it ends.
+        Ok(mut child) => drop(std::thread::spawn(move || child.wait())),
+        Err(error) => log::warn!("{program} {}: {error}", path.display()),
+    }
+}
+
 /// Shows one message; true when it was dismissed.
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
     let palette = Palette::current(ui);
@@ -101,6 +134,15 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
                 ui.label(RichText::new(word).color(colour).strong());
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     dismissed = ui.small_button("Dismiss").clicked();
+                    if let Some(made) = &toast.made {
+                        let show = ui.small_button("Show");
+                        if show
+                            .on_hover_text("Open it with the system's program")
+                            .clicked()
+                        {
+                            open_with_system(made);
+                        }
+                    }
                 });
             });
             ui.add(Label::new(&toast.text).wrap().selectable(true));

@@ -1,6 +1,6 @@
 //! The palette at the left: tools, what painting changes, and with which yarns.
 
-use egui::{Button, Color32, Rect, RichText, Sense, Stroke, StrokeKind, vec2};
+use egui::{Button, Color32, DragValue, Rect, RichText, Sense, Stroke, StrokeKind, vec2};
 use pickglass::design::{Srgb, Structure, YarnId, region_colour};
 use pickglass::edit::Document;
 
@@ -36,6 +36,7 @@ pub fn show(
         });
         ui.separator();
         mirror_ui(ui, draft);
+        steps_ui(ui, draft, document);
         if let Structure::Regions(_) = document.design().structure() {
             ui.separator();
             layers_ui(ui, draft, document);
@@ -100,6 +101,37 @@ fn mirror_ui(ui: &mut egui::Ui, draft: &mut DraftPane) {
             }
         }
     });
+}
+
+/// Whether painting goes on in steps, and of how many ends and picks.
+fn steps_ui(ui: &mut egui::Ui, draft: &mut DraftPane, document: &Document) {
+    let Some(row) = row_of(Command::SymmetrySteps) else {
+        return;
+    };
+    let steps = &mut draft.steps;
+    let on = ui.checkbox(&mut steps.on, "steps").on_hover_text(row.tip);
+    on.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, steps.on, row.label));
+    if !steps.on {
+        return;
+    }
+    let design = document.design();
+    let sizes = [design.ends(), design.picks()];
+    for (axis, name) in ["ends", "picks"].into_iter().enumerate() {
+        let every = &mut steps.every[axis];
+        let shown = |value: f64, _: std::ops::RangeInclusive<usize>| match value as u32 {
+            0 => format!("no {name}"),
+            count => format!("{count} {name}"),
+        };
+        let field = DragValue::new(every)
+            .range(0..=sizes[axis])
+            .speed(0.1)
+            .custom_formatter(shown);
+        let field = ui.add(field);
+        let spoken = format!("Step in {name}");
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &spoken));
+        let tip = format!("Painting is repeated every so many {name}; 0 = not across them");
+        field.on_hover_text(tip);
+    }
 }
 
 fn layers_ui(ui: &mut egui::Ui, draft: &mut DraftPane, document: &Document) {

@@ -6,7 +6,7 @@
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// Closest and furthest look, mm of cloth a point of screen.
-const SCALE_RANGE: std::ops::RangeInclusive<f32> = 0.0002..=2.0;
+const SCALE_RANGE: std::ops::RangeInclusive<f32> = 0.0002..=25.0;
 
 /// The part of the cloth that a pane shows.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -14,7 +14,7 @@ use pickglass::still::{self, PreparedCloth, StillRequest};
 use pickglass::volume::source::VoxelSource;
 
 use super::icons;
-use super::task::{Outcome, Task};
+use super::task::{Outcome, Pace, Task};
 use super::toasts::Grade;
 use crate::tokens::{self, Palette};
 
@@ -166,9 +166,9 @@ impl VolumeExport {
     fn begin(&mut self, ctx: &egui::Context, cloth: Arc<PreparedCloth>, wanted: Wanted) {
         let progress = Arc::new(Mutex::new("preparing".to_owned()));
         let (told, told_ctx) = (Arc::clone(&progress), ctx.clone());
+        let pace = Pace::default();
         let job = Job::new().with_listener(move |stage, fraction| {
-            *told.lock().unwrap_or_else(PoisonError::into_inner) =
-                format!("{stage} {:.0} %", fraction * 100.0);
+            *told.lock().unwrap_or_else(PoisonError::into_inner) = pace.told(stage, fraction);
             told_ctx.request_repaint();
         });
         let work_job = job.clone();
@@ -219,10 +219,11 @@ impl Form {
         let job = Job::new();
         let (asked, work_job) = (self.wanted.clone(), job.clone());
         let work = move || {
+            // Of a very large design only the region is made into cloth.
+            let request = StillRequest::default().over(&design, &wanted.region());
             let cloth = match cloth {
-                Some(cloth) => cloth,
-                None => {
-                    let request = StillRequest::default();
+                Some(cloth) if cloth.covers(&request) => cloth,
+                _ => {
                     let store = ExemplarStore::user();
                     let prepared = still::prepare(&design, &request, &store, &work_job);
                     Arc::new(prepared.map_err(|error| error.to_string())?)

@@ -1,7 +1,7 @@
 //! The commands that change the weave, and those of the clipboard.
 
 use pickglass::design::WeavePattern;
-use pickglass::edit::{Cells, Clip, Direction, Edit, Rect, next_colourway};
+use pickglass::edit::{Cells, Clip, Direction, Edit, Rect};
 
 use super::app::App;
 use super::forms::Form;
@@ -109,6 +109,10 @@ impl App {
                 across: 2,
                 along: 2,
             },
+            Command::RepeatMore => return self.asking.fill_in(Form::Tile([2, 2])),
+            Command::ClearCorrections => {
+                Edit::ClearCorrections(selected.unwrap_or_else(|| Cells::all(ends, picks)))
+            }
             Command::DeriveDraft => {
                 if self.draft.show.arrangement == DraftLayout::Jacquard {
                     self.draft.show.arrangement = DraftLayout::Us;
@@ -116,10 +120,6 @@ impl App {
                 Edit::DeriveDraft { after: None }
             }
             Command::BecomeJacquard => Edit::BecomeJacquard { then: None },
-            Command::NextColourway => match next_colourway(design) {
-                Some(colourway) => Edit::UseColourway(colourway),
-                None => return,
-            },
             _ => return,
         };
         self.edit(edit);

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, CursorIcon, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions,
-    pos2, vec2,
+    ColorImage, CursorIcon, Rect, Sense, Stroke, TextureHandle, TextureOptions, pos2, vec2,
 };
 use pickglass::still::StillRequest;
 
 use crate::tokens::{self, Palette};
+use crate::window::cloth_pane::draw_picture;
 use crate::window::focus;
 use crate::window::view::ClothView;
 
@@ -41,12 +41,7 @@ impl Compare {
         let left = Rect::from_min_max(pane.min, pos2(x, pane.bottom()));
         let painter = ui.painter_at(left);
         painter.rect_filled(left, 0.0, tokens::SURROUND);
-        if let (Some(centre), Some(width)) = (self.still.centre_mm, self.still.width_mm) {
-            let aspect = self.still.width as f32 / self.still.height.max(1) as f32;
-            let rect = view.picture_rect(pane, centre, width, aspect);
-            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-            painter.image(self.texture.id(), rect, whole, Color32::WHITE);
-        }
+        draw_picture(&painter, pane, view, &self.still, &self.texture);
         let grip = Rect::from_center_size(pos2(x, pane.center().y), vec2(HANDLE, pane.height()));
         let id = ui.scope_id().with("compare");
         let response = ui.interact(grip, id, Sense::click_and_drag());

@@ -252,7 +252,7 @@ pub fn mark(painter: &Painter, grid: &CellGrid, document: &Document, mark: Mark)
         outline(painter, rect);
         return;
     }
-    if mark == Mark::Nothing || grid.cell < 1.0 {
+    if mark == Mark::Nothing {
         return;
     }
     let is_marked = |end: i64, pick: i64| {
@@ -267,15 +267,19 @@ pub fn mark(painter: &Painter, grid: &CellGrid, document: &Document, mark: Mark)
         })
     };
     let seen = visible(grid);
-    let past = seen.end + i64::from(seen.ends);
+    // From afar a pixel shows what its first crossing is.
+    let step = (1.0 / grid.cell).ceil().max(1.0) as i64;
+    let count = |threads: u32| (i64::from(threads) + step - 1) / step;
     let mut mesh = Mesh::default();
-    for pick in seen.pick..seen.pick + i64::from(seen.picks) {
+    for row in 0..count(seen.picks) {
+        let pick = seen.pick + row * step;
         runs(
-            seen.end,
-            past,
-            |end| is_marked(end, pick) == Some(false),
+            0,
+            count(seen.ends),
+            |column| is_marked(seen.end + column * step, pick) == Some(false),
             |from, to| {
-                mesh.add_colored_rect(grid.rect(from, pick, to - from, 1), tokens::VEIL);
+                let (end, ends) = (seen.end + from * step, (to - from) * step);
+                mesh.add_colored_rect(grid.rect(end, pick, ends, step), tokens::VEIL);
             },
         );
     }

@@ -14,6 +14,7 @@ mod grid;
 mod input;
 mod navigator;
 mod picture;
+pub mod reference;
 mod strokes;
 mod tiles;
 mod zone;
@@ -31,6 +32,7 @@ use bands::Band;
 pub use bands::draft as draft_of;
 pub use draw::end_number;
 use grid::{CellGrid, Look};
+use reference::Reference;
 pub use strokes::tool_name;
 use zone::{Cell, Zone};
 
@@ -60,6 +62,23 @@ pub enum Layer {
     Regions,
 }
 
+/// Steps by which everything that is painted is painted again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Steps {
+    pub on: bool,
+    /// Ends and picks; 0 = not in this direction.
+    pub every: [u32; 2],
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self {
+            on: false,
+            every: [8; 2],
+        }
+    }
+}
+
 /// A tool that is used while its key is held.
 struct Held {
     key: Key,
@@ -73,6 +92,10 @@ pub struct DraftPane {
     pub show: Showing,
     /// Painting is mirrored left and right, top and bottom.
     pub symmetry: [bool; 2],
+    /// Painting is repeated in steps.
+    pub steps: Steps,
+    /// The picture that is drawn by.
+    pub reference: Option<Reference>,
     /// Longest floats over picks and over ends that are not marked.
     pub limits: [u32; 2],
     pub mark: Mark,
@@ -115,6 +138,8 @@ impl DraftPane {
                 navigator: settings.navigator,
             },
             symmetry: [false; 2],
+            steps: Steps::default(),
+            reference: None,
             limits: [USUAL_LIMIT; 2],
             mark: Mark::Nothing,
             yarns: [YarnId(0), YarnId(1)],
@@ -146,6 +171,7 @@ impl DraftPane {
         self.tiles.clear();
         self.navigator.forget();
         self.selection = None;
+        self.reference = None;
         self.mark = Mark::Nothing;
         (self.yarns, self.regions) = ([YarnId(0), YarnId(1)], [0, 1]);
         self.give_up();
@@ -318,6 +344,11 @@ impl DraftPane {
         self.drawdown_touches(ui, document, &areas, &grid, actions);
         self.band_touches(ui, document, &areas, &grid, actions);
         self.draw(ui, document, &areas, &grid, &look);
+        if let Some(reference) = &mut self.reference
+            && !reference.window(ui.ctx())
+        {
+            self.reference = None;
+        }
         if self.show.navigator {
             let moved = self.navigator.show(ui, document, &areas, &grid);
             if let (Some(centre), Some(look)) = (moved, &mut self.look) {

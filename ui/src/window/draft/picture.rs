@@ -42,6 +42,9 @@ impl DraftPane {
         {
             painter.add(Shape::mesh(mesh));
         }
+        if let Some(reference) = &self.reference {
+            reference.draw(&painter, grid, design);
+        }
         if self.show.grid_lines {
             draw::grid_lines(&painter, grid);
         }

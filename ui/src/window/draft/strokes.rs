@@ -3,7 +3,7 @@
 use pickglass::design::Structure;
 use pickglass::edit::fill::{Alike, everywhere, flood};
 use pickglass::edit::shapes::{line, rectangle};
-use pickglass::edit::{Cells, Document, Edit, Rect, Span, Surface, Symmetry};
+use pickglass::edit::{Cells, Document, Edit, MOST_COPIES, Rect, Span, Surface, Symmetry};
 
 use super::super::action::{Action, Button};
 use super::super::toasts::Grade;
@@ -89,6 +89,10 @@ impl DraftPane {
     /// Keys paint like the tool would; the pencil exchanges warp and weft.
     fn key(&mut self, document: &Document, cell: Cell, button: Button, actions: &mut Vec<Action>) {
         let flip = self.tool() == Tool::Pencil && self.layer(document) == Layer::Weave;
+        if let Some(problem) = self.steps_problem(document).filter(|_| flip) {
+            actions.push(nothing(&problem));
+            return;
+        }
         if flip {
             let surface = self.surface(document);
             let cells = surface.cells(line(&surface, cell, cell));
@@ -110,6 +114,12 @@ impl DraftPane {
     ) {
         let tool = self.tool();
         self.tool_used();
+        if let (Tool::Pencil | Tool::Line | Tool::Rectangle, Some(problem)) =
+            (tool, self.steps_problem(document))
+        {
+            actions.push(nothing(&problem));
+            return;
+        }
         let mut stroke = Stroke {
             tool,
             button,
@@ -248,6 +258,25 @@ impl DraftPane {
         }));
     }
 
+    /// Ends and picks after which painting is repeated; 0 = not at all.
+    fn every(&self) -> (u32, u32) {
+        match self.steps.on {
+            true => (self.steps.every[0], self.steps.every[1]),
+            false => (0, 0),
+        }
+    }
+
+    /// What stands against painting in the steps that are chosen, if anything does.
+    fn steps_problem(&self, document: &Document) -> Option<String> {
+        let copies = Surface::of(document.design()).copies(self.every());
+        (copies > MOST_COPIES).then(|| {
+            format!(
+                "These steps would paint everything {copies} times (the most is {MOST_COPIES}): \
+                 choose larger ones."
+            )
+        })
+    }
+
     /// The design to paint on, with the symmetries that are on.
     fn surface(&self, document: &Document) -> Surface {
         let design = document.design();
@@ -255,7 +284,7 @@ impl DraftPane {
         Surface::of(design).with_symmetry(Symmetry {
             mirror_ends: middle(self.symmetry[0], design.ends()),
             mirror_picks: middle(self.symmetry[1], design.picks()),
-            ..Symmetry::default()
+            every: self.every(),
         })
     }
 

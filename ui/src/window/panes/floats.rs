@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{DragValue, RichText, ScrollArea};
-use pickglass::design::{ClothBox, FaceFloat, long_floats_in};
+use pickglass::design::{FaceFloat, longest_floats};
 use pickglass::edit::Document;
 
 use super::later::Later;
@@ -18,9 +18,10 @@ const MOST_LISTED: usize = 400;
 const MOST_THREADS: u32 = 999;
 
 /// The floats of a drawdown, longest first, and how many there are.
+#[derive(Default)]
 struct Found {
     floats: Vec<FaceFloat>,
-    all: usize,
+    all: u64,
 }
 
 /// The list and its limit.
@@ -71,18 +72,11 @@ impl Floats {
         let (limits, drawdown) = (self.limits, Arc::clone(document.drawdown()));
         let lattice = design.lattice();
         let question = (document.revision(), limits);
-        self.found.ask(ui.ctx(), &question, move |_| {
-            let window = ClothBox {
-                end: 0,
-                pick: 0,
-                ends: drawdown.ends(),
-                picks: drawdown.picks(),
-            };
-            let mut floats = long_floats_in(&drawdown, lattice, window, limits[0], limits[1]);
-            let all = floats.len();
-            floats.sort_by_key(|float| (std::cmp::Reverse(float.length), *float));
-            floats.truncate(MOST_LISTED);
-            Found { floats, all }
+        self.found.ask(ui.ctx(), &question, move |job| {
+            // What was cancelled is never shown.
+            longest_floats(&drawdown, lattice, limits, MOST_LISTED, job)
+                .map(|(floats, all)| Found { floats, all })
+                .unwrap_or_default()
         });
         let Some(found) = self.found.answer() else {
             ui.label(RichText::new("Looking for floats…").color(quiet));
@@ -98,7 +92,7 @@ impl Floats {
             return;
         }
         let listed = found.floats.len();
-        let more = if found.all > listed {
+        let more = if found.all > listed as u64 {
             format!(", the longest {listed} listed")
         } else {
             String::new()

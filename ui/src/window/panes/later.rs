@@ -64,6 +64,11 @@ impl<K: PartialEq + Clone, T: Send + 'static> Later<K, T> {
         self.known.as_ref().map(|(_, answer)| answer)
     }
 
+    /// The question that [`Self::answer`] answers.
+    pub fn question(&self) -> Option<&K> {
+        self.known.as_ref().map(|(question, _)| question)
+    }
+
     /// Whether a newer answer is being worked out.
     pub fn is_working(&self) -> bool {
         self.under_way.is_some()

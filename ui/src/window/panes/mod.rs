@@ -3,11 +3,13 @@
 //! and [`Panes`] holds them. A new pane is one file, one variant and one field.
 
 mod colourways;
+mod dragging;
 mod floats;
 mod history;
-mod later;
+pub mod later;
 mod log;
 mod posterise;
+mod region_details;
 mod regions;
 mod section;
 mod sett;
@@ -16,6 +18,8 @@ mod swatches;
 mod tests;
 mod weave_picker;
 mod yarns;
+
+use std::path::Path;
 
 use pickglass::edit::Document;
 use serde::{Deserialize, Serialize};
@@ -102,6 +106,11 @@ impl Panes {
 }
 
 impl Panes {
+    /// Reads a picture to be posterised.
+    pub fn posterise(&mut self, ctx: &egui::Context, path: &Path) {
+        self.posterise.read_file(ctx, path);
+    }
+
     /// Shows a pane.
     pub fn show(
         &mut self,

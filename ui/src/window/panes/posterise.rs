@@ -1,7 +1,7 @@
 //! Posterising: the picture beside its map, and what it is made with; live, on a thread of
 //! its own.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{DragValue, RichText, ScrollArea, TextEdit, TextureHandle, TextureOptions, Vec2, vec2};
@@ -15,6 +15,7 @@ use super::regions::RegionList;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::icons;
+use crate::window::picture::shrunk;
 use crate::window::task::{Outcome, Task};
 use crate::window::toasts::Grade;
 
@@ -118,8 +119,7 @@ impl Posterise {
                 Outcome::Ready(path) => {
                     self.choosing = None;
                     if let Some(path) = path {
-                        self.path = path.display().to_string();
-                        self.read(ctx);
+                        self.read_file(ctx, &path);
                     }
                 }
                 Outcome::Lost => self.choosing = None,
@@ -146,6 +146,12 @@ impl Posterise {
         }
     }
 
+    /// Reads the picture at a path.
+    pub fn read_file(&mut self, ctx: &egui::Context, path: &Path) {
+        self.path = path.display().to_string();
+        self.read(ctx);
+    }
+
     fn read(&mut self, ctx: &egui::Context) {
         let path = PathBuf::from(self.path.trim());
         self.problem = None;
@@ -158,17 +164,7 @@ impl Posterise {
 
     /// Takes a picture to be posterised.
     pub fn take(&mut self, ctx: &egui::Context, source: Arc<SourceImage>) {
-        let (width, height) = (source.width() as usize, source.height() as usize);
-        let step = width.max(height).div_ceil(SHOWN).max(1);
-        let size = [(width / step).max(1), (height / step).max(1)];
-        let pixels = (0..size[0] * size[1])
-            .map(|at| {
-                let (x, y) = (at % size[0] * step, at / size[0] * step);
-                let [red, green, blue] = source.pixels()[y * width + x];
-                tokens::yarn_colour(red, green, blue)
-            })
-            .collect();
-        let image = egui::ColorImage::new(size, pixels);
+        let image = shrunk(&source, SHOWN);
         self.picture = Some(Picture {
             source,
             number: self

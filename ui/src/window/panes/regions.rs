@@ -3,20 +3,27 @@
 use std::sync::Arc;
 
 use egui::RichText;
-use pickglass::design::{Region, Regions, Srgb, Structure};
+use pickglass::design::{Design, Fill, Region, RegionYarns, Regions, Srgb, Structure, YarnId};
 use pickglass::edit::{Document, Edit};
 
 use super::later::Later;
+use super::region_details::RegionDetails;
 use super::swatches;
 use super::weave_picker::{Picked, WeavePicker};
 use crate::tokens::Palette;
 use crate::window::action::{Action, Button, Mark};
+
+/// Yarns that are offered for a region.
+const MOST_YARNS: usize = 64;
 
 /// The list of regions.
 #[derive(Default)]
 pub struct RegionList {
     picker: Option<(u16, WeavePicker)>,
     areas: Later<u64, Vec<f64>>,
+    /// The region whose details are open.
+    open: Option<u16>,
+    details: RegionDetails,
 }
 
 impl RegionList {
@@ -42,12 +49,26 @@ impl RegionList {
             {
                 actions.push(Action::edit(Edit::SortRegions));
             }
+            let add = ui.button("Add region");
+            let tip = "A region more in plain weave; choose it to paint with";
+            if add.on_hover_text(tip).clicked()
+                && let Ok(fill) = Fill::by_notation("plain")
+            {
+                let name = format!("region {}", count + 1);
+                actions.push(Action::edit(Edit::AddRegion(Box::new(Region::new(
+                    name, fill,
+                )))));
+            }
             let weavable = document.design().weavable();
             let word = if weavable { "weavable" } else { "preview only" };
             ui.label(RichText::new(word).color(Palette::current(ui).quiet));
         });
         for (number, region) in regions.palette().iter().enumerate() {
-            self.region_ui(ui, number as u16, count as u16, region, actions);
+            let design = document.design();
+            self.region_ui(ui, design, (number as u16, count as u16), region, actions);
+            if self.open == Some(number as u16) {
+                self.details.show(ui, regions, number as u16, actions);
+            }
         }
         let Some((number, picker)) = &mut self.picker else {
             return;
@@ -70,8 +91,8 @@ impl RegionList {
     fn region_ui(
         &mut self,
         ui: &mut egui::Ui,
-        number: u16,
-        count: u16,
+        design: &Design,
+        (number, count): (u16, u16),
         region: &Region,
         actions: &mut Vec<Action>,
     ) {
@@ -121,6 +142,7 @@ impl RegionList {
                     locked,
                 }));
             }
+            yarns_ui(ui, design, number, region, actions);
             for (text, to) in [
                 ("Up", number.checked_sub(1)),
                 ("Down", number.checked_add(1)),
@@ -137,11 +159,12 @@ impl RegionList {
                     actions.push(Action::edit(Edit::OrderRegions(order)));
                 }
             }
-            ui.label(
-                RichText::new(&name)
-                    .small()
-                    .color(Palette::current(ui).quiet),
-            );
+            let open = self.open == Some(number);
+            let more = ui.selectable_label(open, &name);
+            let tip = "Where it lies shows in the draft; click for more";
+            if more.on_hover_text(tip).clicked() {
+                self.open = (!open).then_some(number);
+            }
         });
         if focused || ui.rect_contains_pointer(row.response.rect) {
             actions.push(Action::Mark(Mark::Region(number)));
@@ -149,8 +172,75 @@ impl RegionList {
     }
 }
 
+/// Which yarns lie in a region: the design's, or some of its own, which no loom can do.
+fn yarns_ui(
+    ui: &mut egui::Ui,
+    design: &Design,
+    number: u16,
+    region: &Region,
+    actions: &mut Vec<Action>,
+) {
+    let name_of = |yarn: YarnId| design.yarn(yarn).name.as_str();
+    let told = match region.yarns {
+        None => "design's yarns".to_owned(),
+        Some(own) => format!("{} × {}", name_of(own.warp), name_of(own.weft)),
+    };
+    let usual = RegionYarns {
+        warp: design.warp_yarn(0, 0),
+        weft: design.weft_yarn(0, 0),
+    };
+    let present = region.yarns.unwrap_or(usual);
+    let mut chosen: Option<Option<RegionYarns>> = None;
+    let menu = ui.menu_button(&told, |ui| {
+        if ui
+            .add(egui::Button::selectable(
+                region.yarns.is_none(),
+                "The design's yarns",
+            ))
+            .on_hover_text("As warped and woven: a loom can do it")
+            .clicked()
+        {
+            chosen = Some(None);
+            ui.close();
+        }
+        for (warp, title) in [(true, "Warp"), (false, "Weft")] {
+            ui.menu_button(title, |ui| {
+                for index in 0..design.yarns().len().min(MOST_YARNS) as u16 {
+                    let yarn = YarnId(index);
+                    let here = if warp { present.warp } else { present.weft };
+                    let on = region.yarns.is_some() && here == yarn;
+                    if ui
+                        .add(egui::Button::selectable(on, name_of(yarn)))
+                        .clicked()
+                    {
+                        chosen = Some(Some(match warp {
+                            true => RegionYarns {
+                                warp: yarn,
+                                ..present
+                            },
+                            false => RegionYarns {
+                                weft: yarn,
+                                ..present
+                            },
+                        }));
+                        ui.close();
+                    }
+                }
+            });
+        }
+    });
+    let spoken = format!("Yarns of {}: {told}", region.name);
+    (menu.response)
+        .on_hover_text("Yarns of its own change along their threads: preview only")
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
+    if let Some(yarns) = chosen.filter(|chosen| *chosen != region.yarns) {
+        let region = number;
+        actions.push(Action::edit(Edit::SetRegionYarns { region, yarns }));
+    }
+}
+
 /// The share of the design's crossings that each region has.
-fn areas(design: &pickglass::design::Design) -> Vec<f64> {
+fn areas(design: &Design) -> Vec<f64> {
     let Structure::Regions(regions) = design.structure() else {
         return Vec::new();
     };

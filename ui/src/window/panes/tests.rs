@@ -2,6 +2,7 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use pickglass::design::Structure;
 use pickglass::edit::{Document, Edit};
 use pickglass::formats::presets;
 
@@ -284,4 +285,44 @@ fn every_pane_draws_itself_in_both_themes() {
             }
         }
     }
+}
+
+#[test]
+fn regions_are_added_given_yarns_and_joined() {
+    let mut harness = bench("damask", Pane::Posterise);
+    harness.run_steps(3);
+    let palette =
+        |harness: &Harness<'static, Bench>| match harness.state().document.design().structure() {
+            Structure::Regions(regions) => regions.palette().to_vec(),
+            other => panic!("{other:?}"),
+        };
+    let before = palette(&harness);
+    let drawdown = harness.state().document.drawdown().clone();
+    harness.get_by_label("Add region").click();
+    harness.run_steps(3);
+    assert_eq!(palette(&harness).len(), before.len() + 1);
+    assert_eq!(*harness.state().document.drawdown(), drawdown);
+
+    let first = before[0].name.clone();
+    let yarns = format!("Yarns of {first}: design's yarns");
+    harness.get_by_label(&yarns).click();
+    harness.run_steps(3);
+    harness.get_by_label("Weft").click();
+    harness.run_steps(3);
+    let yarn = harness.state().document.design().yarns()[0].name.clone();
+    harness.get_by_label(&yarn).click();
+    harness.run_steps(3);
+    let own = palette(&harness)[0].yarns.expect("yarns of its own");
+    assert_eq!(own.weft, pickglass::design::YarnId(0));
+    assert!(!harness.state().document.design().weavable());
+
+    harness.get_by_label(&first).click();
+    harness.run_steps(3);
+    let origin = format!("First end of the weave of {first}");
+    assert!(harness.query_by_label(&origin).is_some());
+    harness.get_by_label("Join").click();
+    harness.run_steps(3);
+    let after = palette(&harness);
+    assert_eq!(after.len(), before.len());
+    assert!(after.iter().all(|region| region.name != first));
 }

@@ -8,6 +8,7 @@ use pickglass::design::checks::{Interlacing, YarnNeed, take_up, yarn_needs};
 use pickglass::design::{CountUnit, Design, Family, Yarn, YarnId, stripes};
 use pickglass::edit::{Direction, Document, Edit};
 
+use super::dragging::Dragging;
 use super::later::Later;
 use super::swatches;
 use crate::tokens::{self, Palette};
@@ -27,8 +28,7 @@ pub struct Yarns {
     open: Option<u16>,
     /// The yarn that another is to be exchanged or joined with.
     with: u16,
-    /// Which field is being changed, so that a drag is one entry of the history.
-    changing: Option<egui::Id>,
+    changing: Dragging,
     stripes: [Stripes; 2],
     needs: Later<u64, Vec<YarnNeed>>,
 }
@@ -117,7 +117,7 @@ impl Yarns {
         let row = ui.horizontal(|ui| {
             let mut changed = yarn.clone();
             let colour = swatches::button(ui, &mut changed.colour, &yarn.name);
-            self.note(ui, &colour, "yarn colour", actions);
+            self.changing.note(ui, &colour, "yarn colour", actions);
             if changed != *yarn {
                 set(id, changed, actions);
             }
@@ -170,7 +170,8 @@ impl Yarns {
             .show(ui, |ui| {
                 let label = ui.label("Name");
                 let field = ui.add(TextEdit::singleline(&mut changed.name).char_limit(80));
-                self.note(ui, &field.labelled_by(label.id), "rename yarn", actions);
+                self.changing
+                    .note(ui, &field.labelled_by(label.id), "rename yarn", actions);
                 ui.end_row();
                 let label = ui.label("Family");
                 let families = egui::ComboBox::from_id_salt(("family", id.0));
@@ -191,7 +192,7 @@ impl Yarns {
                     .speed(speed)
                     .suffix(format!(" {}", self.unit.name()));
                 let field = ui.add(field).labelled_by(label.id);
-                self.note(ui, &field, "yarn count", actions);
+                self.changing.note(ui, &field, "yarn count", actions);
                 let tex = self.unit.to_tex(count, self.plies);
                 if field.changed() && (0.01..=1e6).contains(&tex) {
                     changed.tex = Some(tex as f32);
@@ -205,7 +206,7 @@ impl Yarns {
                     .range(0.01..=20.0)
                     .suffix(" mm");
                 let field = ui.add(field).labelled_by(label.id);
-                self.note(ui, &field, "yarn diameter", actions);
+                self.changing.note(ui, &field, "yarn diameter", actions);
                 if field.changed() {
                     changed.diameter_mm = Some(diameter);
                 }
@@ -214,7 +215,7 @@ impl Yarns {
                 let mut gloss = 1.0 - yarn.alpha();
                 let slider = egui::Slider::new(&mut gloss, 0.0..=0.99);
                 let field = ui.add(slider).labelled_by(label.id);
-                self.note(ui, &field, "yarn gloss", actions);
+                self.changing.note(ui, &field, "yarn gloss", actions);
                 if field.changed() {
                     changed.gloss = Some(1.0 - gloss);
                 }
@@ -349,26 +350,6 @@ impl Yarns {
             });
         }
         ui.add_space(tokens::GRID);
-    }
-
-    /// Makes one entry of the history of a drag or of typing in a field.
-    fn note(
-        &mut self,
-        ui: &egui::Ui,
-        field: &egui::Response,
-        name: &str,
-        actions: &mut Vec<Action>,
-    ) {
-        let popup = egui::Popup::is_any_open(ui.ctx());
-        let busy = field.dragged() || field.has_focus() || (popup && field.changed());
-        let ours = self.changing == Some(field.id);
-        if field.changed() && !ours {
-            actions.push(Action::Begin(name.to_owned()));
-            self.changing = Some(field.id);
-        } else if ours && !busy && !field.changed() && !popup {
-            actions.push(Action::Finish);
-            self.changing = None;
-        }
     }
 }
 

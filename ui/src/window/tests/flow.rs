@@ -207,13 +207,13 @@ fn colourways_are_switched_by_key_all_round() {
     let structure = window.state().document().expect("open").drawdown().clone();
     let mut seen = vec![own.clone()];
     for _ in 0..count {
-        window.key_press_modifiers(Modifiers::SHIFT, Key::C);
+        window.key_press(Key::Period);
         window.run_steps(2);
         let now = colours(&window);
         assert!(!seen.contains(&now), "each once");
         seen.push(now);
     }
-    window.key_press_modifiers(Modifiers::SHIFT, Key::C);
+    window.key_press(Key::Period);
     window.run_steps(2);
     assert_eq!(colours(&window), own, "after the last comes the first");
     let document = window.state().document().expect("open");

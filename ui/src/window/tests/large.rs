@@ -8,7 +8,7 @@ use pickglass::design::{
     Design, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
 
-use super::{Window, builder, open};
+use super::{Window, builder, open, says, wait_for};
 use crate::opened::Opened;
 
 /// A satin of so many ends and picks in two cottons.
@@ -106,8 +106,8 @@ fn the_largest_loom_file_is_painted_in() {
 }
 
 #[test]
-fn a_design_at_the_limit_opens_and_pans() {
-    let mut window = still(satin(16_000, 16_000));
+fn a_panel_of_sixteen_by_twenty_thousand_opens_and_pans() {
+    let mut window = still(satin(16_000, 20_000));
     window.state_mut().spent.clear();
     for step in 0..40 {
         window.state_mut().draft.look_at(400 * step, 300 * step);
@@ -118,5 +118,29 @@ fn a_design_at_the_limit_opens_and_pans() {
         window.step();
     }
     assert!(window.state().draft.cell() > 1.0);
-    tell("panning on 16000 × 16000", &mut window.state_mut().spent);
+    tell("panning on 16000 × 20000", &mut window.state_mut().spent);
+}
+
+/// The cloth of the part in view is traced, and a view of all of it stays at first sight
+/// without a failure; neither makes the whole panel into cloth.
+#[test]
+fn the_cloth_of_a_large_panel_is_traced_where_one_looks() {
+    let mut window = open(
+        builder().with_size([1280.0, 800.0]),
+        Some(satin(16_000, 20_000)),
+    );
+    wait_for(&mut window, "a traced picture", |window| {
+        let shown = &window.state().preview.pane.shown;
+        shown.as_ref().is_some_and(|shown| shown.spp > 0)
+    });
+    window.state().preview.focus(&window.ctx.clone());
+    window.run_steps(2);
+    window.key_press(Key::F);
+    wait_for(&mut window, "first sight of all", |window| {
+        says(window, "look closer to refine")
+    });
+    let shown = window.state().preview.pane.shown.as_ref();
+    let width = shown.and_then(|shown| shown.still.width_mm);
+    assert!(width.is_some_and(|mm| mm > 1000.0), "{width:?}");
+    assert!(!says(&window, "Error"));
 }

@@ -1,10 +1,11 @@
 //! The window without a display: clicks and keys by accessible label, and pictures of it
 //! on a software adapter.
 
+mod colours;
 mod files;
+mod flow;
 mod hard;
 mod keys;
-mod flow;
 mod large;
 mod opening;
 mod painting;

@@ -70,3 +70,86 @@ fn a_dropped_file_opens() {
         says(window, "Drawdown of ")
     });
 }
+
+/// A checked image of 8 × 4 pixels, its lower left pixel black.
+fn checked(folder: &std::path::Path) -> PathBuf {
+    let path = folder.join("checked.png");
+    let image = image::GrayImage::from_fn(8, 4, |x, y| {
+        image::Luma([if (x + y) % 2 == 1 { 0 } else { 255 }])
+    });
+    image.save(&path).expect("written");
+    path
+}
+
+#[test]
+fn an_image_is_asked_about_beside_a_preview() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = checked(folder.path());
+    let up = |window: &Window| {
+        let document = window.state().document().expect("open");
+        (document.drawdown().get(0, 0), document.drawdown().ends())
+    };
+    for (black, expected) in [(None, true), (Some("weft up"), false)] {
+        let mut window = build(builder(), None);
+        window.step();
+        open_by_path(&mut window, &path.display().to_string());
+        wait_for(&mut window, "the preview", |window| {
+            says(window, "8 ends × 4 picks")
+        });
+        assert!(window.state().document().is_none(), "nothing opens unasked");
+        if let Some(black) = black {
+            window.get_by_label(black).click();
+            window.run_steps(2);
+            wait_for(&mut window, "the preview again", |window| {
+                says(window, "black = weft up")
+            });
+        }
+        window.get_by_label("Open it").click();
+        wait_for(&mut window, "the design", |window| {
+            says(window, "Drawdown of ")
+        });
+        window.state_mut().preview.freeze();
+        assert_eq!(up(&window), (expected, 8), "{black:?}");
+    }
+}
+
+#[test]
+fn an_image_that_is_given_up_leaves_what_was_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = checked(folder.path());
+    let mut window = build(builder(), Some("oxford"));
+    window.state_mut().preview.freeze();
+    window.step();
+    open_by_path(&mut window, &path.display().to_string());
+    wait_for(&mut window, "the form", |window| {
+        says(window, "Open the image")
+    });
+    window.get_by_label("Cancel").click();
+    window.run_steps(3);
+    assert!(!says(&window, "Open the image"));
+    assert!(shows(&window, "Drawdown of Oxford"));
+}
+
+#[test]
+fn a_photograph_goes_on_to_be_posterised() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("sunset.png");
+    let image = image::RgbImage::from_fn(64, 48, |x, y| {
+        image::Rgb([(4 * x) as u8, (5 * y) as u8, ((x * y) % 251) as u8])
+    });
+    image.save(&path).expect("written");
+    let mut window = build(builder(), None);
+    window.step();
+    open_by_path(&mut window, &path.display().to_string());
+    wait_for(&mut window, "the form", |window| {
+        says(window, "Open the image")
+    });
+    window
+        .get_by_label("A photograph, to be posterised")
+        .click();
+    window.run_steps(2);
+    window.get_by_label("Posterise").click();
+    wait_for(&mut window, "the picture", |window| {
+        shows(window, "Make it the design")
+    });
+}

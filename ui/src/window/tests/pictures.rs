@@ -44,7 +44,7 @@ fn picture_of_nothing_open() {
     let mut window = build(builder().renderer(renderer), None);
     // The thumbnails are drawn on a thread.
     wait_for(&mut window, "the thumbnails", |window| {
-        shows(window, "Oxford")
+        shows(window, "Oxford") && window.state().start.is_drawn()
     });
     window.run_steps(5);
     window.snapshot_options("nothing_open", &tolerance());
@@ -70,7 +70,7 @@ fn a_changed_picture_fails() {
     let mut window = build(builder().renderer(renderer), None);
     // The thumbnails are drawn on a thread.
     wait_for(&mut window, "the thumbnails", |window| {
-        shows(window, "Oxford")
+        shows(window, "Oxford") && window.state().start.is_drawn()
     });
     window.run_steps(5);
     window.mask(egui::Rect::from_min_size(

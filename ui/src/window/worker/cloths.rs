@@ -4,6 +4,9 @@
 //! exemplars that are not there, the coarse one steps in, a thread of its own builds them
 //! and the last request is drawn again. A build goes on through edits that need the same
 //! exemplars.
+//!
+//! Of a very large design a cloth has the part around the view, and follows the eye as it
+//! follows edits. A view of too much of one stays at first sight.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -51,9 +54,12 @@ pub(super) fn cloth_of(
     job: &Job,
     coarse: &mut Option<Kept>,
 ) -> Result<(Arc<PreparedCloth>, bool), StillError> {
+    still::check_view(&request.design, &request.still)?;
     let full = desk.lock().full.clone();
     let wanted = match full {
-        Some((made_for, cloth)) if made_for.same_cloth(request) => return Ok((cloth, true)),
+        Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&request.still) => {
+            return Ok((cloth, true));
+        }
         Some((made_for, cloth)) if made_for.same_dials(request) => {
             match cloth.follow(&request.design, &request.drawdown, &request.still, job)? {
                 Some(Followed::Ready(cloth)) => {
@@ -82,7 +88,9 @@ fn coarse_cloth(
         .dials
         .push(("level".to_owned(), COARSE_LEVEL.to_owned()));
     let followed = match coarse {
-        Some((made_for, cloth)) if made_for.same_cloth(request) => return Ok(Arc::clone(cloth)),
+        Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&still) => {
+            return Ok(Arc::clone(cloth));
+        }
         Some((made_for, cloth)) if made_for.same_dials(request) => {
             cloth.follow(&request.design, &request.drawdown, &still, job)?
         }

@@ -92,6 +92,8 @@ pub enum Phase {
     Refining,
     /// The picture is as good as asked for.
     Done,
+    /// First sight, and no more: why the view is not traced.
+    AtSight(String),
     /// Cancelled by the person.
     Stopped,
     Failed(String),
@@ -297,6 +299,7 @@ fn work(desk: &Arc<Desk>) {
             Ok(Ok(())) => Phase::Done,
             // A newer request or the person ended it: nothing to say.
             Ok(Err(StillError::Cancelled(_))) => Phase::Stopped,
+            Ok(Err(error)) if error.is_too_wide() => Phase::AtSight(error.to_string()),
             Ok(Err(error)) => Phase::Failed(error.to_string()),
             Err(_) => {
                 (kit.coarse, kit.screen, kit.glass) = (None, None, None);

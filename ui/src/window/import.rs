@@ -1,0 +1,285 @@
+//! Opening an image: what cannot be known from the file is asked beside a preview of what
+//! comes of it, with the habits of makers to begin with.
+
+use std::path::PathBuf;
+
+use egui::{
+    Button, ComboBox, DragValue, Id, Modal, RichText, ScrollArea, TextureHandle, TextureOptions,
+    vec2,
+};
+use pickglass::formats::LoadOptions;
+use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageReading, Key};
+
+use super::icons;
+use super::panes::later::Later;
+use super::thumbs;
+use super::toasts::Grade;
+use crate::opened::Opened;
+use crate::tokens::{self, Palette};
+
+/// Side of the preview, points.
+const PREVIEW: f32 = 50.0 * tokens::GRID;
+/// Width of the questions, points.
+const QUESTIONS: f32 = 68.0 * tokens::GRID;
+
+/// What an image may be.
+const KINDS: [(Option<ImageAs>, &str); 6] = [
+    (None, "As its colours suggest"),
+    (Some(ImageAs::Weave), "A weave: one pixel a crossing"),
+    (Some(ImageAs::Artwork), "Artwork: one colour a region"),
+    (Some(ImageAs::Warp), "The warp yarns, by colour"),
+    (Some(ImageAs::Weft), "The weft yarns, by colour"),
+    (Some(ImageAs::Picture), "A photograph, to be posterised"),
+];
+
+/// The corner where end 1 and pick 1 meet, in words.
+const CORNERS: [(Corner, &str); 4] = [
+    (Corner::BottomLeft, "lower left"),
+    (Corner::BottomRight, "lower right"),
+    (Corner::TopLeft, "upper left"),
+    (Corner::TopRight, "upper right"),
+];
+
+/// What came of the form.
+pub enum Answer {
+    /// The design as it was shown.
+    Open(Box<Opened>),
+    /// The picture is to be posterised.
+    Posterise(PathBuf),
+    Closed,
+}
+
+/// What is answered so far.
+#[derive(Debug, Clone, PartialEq)]
+struct Answers {
+    reading: ImageReading,
+    /// Ends and picks per cm, where the person knows better than the file.
+    sett: Option<(f32, f32)>,
+}
+
+/// What would be opened, or why nothing would.
+type Read = Result<(Opened, egui::ColorImage), String>;
+
+/// The form of one image.
+pub struct Import {
+    path: PathBuf,
+    answers: Answers,
+    maker: Option<Convention>,
+    read: Later<Answers, Read>,
+    /// The preview, and what it answers.
+    shown: Option<(Answers, TextureHandle)>,
+}
+
+impl Import {
+    /// The form of the image at a path.
+    pub fn new(path: PathBuf) -> Self {
+        Self {
+            path,
+            answers: Answers {
+                reading: ImageReading::default(),
+                sett: None,
+            },
+            maker: None,
+            read: Later::default(),
+            shown: None,
+        }
+    }
+
+    /// Shows the form; the answer once there is one.
+    pub fn show(&mut self, ctx: &egui::Context) -> Option<Answer> {
+        self.read_again(ctx);
+        let mut answer = None;
+        let modal = Modal::new(Id::unique("import")).show(ctx, |ui| {
+            let name = self.path.file_name().unwrap_or(self.path.as_os_str());
+            let title = format!("Open the image {}", name.to_string_lossy());
+            ui.label(RichText::new(title).text_style(egui::TextStyle::Heading));
+            ui.add_space(tokens::GAP);
+            let room = ctx.content_rect().height() - 40.0 * tokens::GRID;
+            ScrollArea::vertical()
+                .max_height(room.max(tokens::LIST_HEIGHT))
+                .show(ui, |ui| {
+                    ui.horizontal_top(|ui| {
+                        ui.vertical(|ui| {
+                            ui.set_width(QUESTIONS);
+                            self.questions_ui(ui);
+                        });
+                        ui.vertical(|ui| {
+                            ui.set_width(PREVIEW);
+                            self.preview_ui(ui);
+                        });
+                    });
+                });
+            ui.add_space(tokens::GAP);
+            answer = self.buttons_ui(ui);
+        });
+        if modal.should_close() {
+            answer = Some(Answer::Closed);
+        }
+        answer
+    }
+
+    /// Reads the image as the answers say, on a thread.
+    fn read_again(&mut self, ctx: &egui::Context) {
+        let (path, wanted) = (self.path.clone(), self.answers.clone());
+        if !self.is_picture() {
+            self.read.ask(ctx, &self.answers, move |_| {
+                let options = LoadOptions {
+                    sett: wanted.sett,
+                    image: wanted.reading,
+                    ..LoadOptions::default()
+                };
+                let opened = Opened::read(path, &options).map_err(|error| format!("{error:#}"))?;
+                let image = thumbs::swatch_of(&opened.design, &opened.design.weave());
+                Ok((opened, image))
+            });
+        }
+        let answered = self.read.question().filter(|known| **known == self.answers);
+        let fresh = self.shown.as_ref().map(|(known, _)| known) != answered;
+        if let (true, Some(Ok((_, image))), Some(known)) = (fresh, self.read.answer(), answered) {
+            let texture = ctx.load_texture("import", image.clone(), TextureOptions::LINEAR);
+            self.shown = Some((known.clone(), texture));
+        }
+    }
+
+    fn is_picture(&self) -> bool {
+        self.answers.reading.what == Some(ImageAs::Picture)
+    }
+
+    fn questions_ui(&mut self, ui: &mut egui::Ui) {
+        let label = ui.label("Made for or by");
+        let name = |maker: Option<Convention>| maker.map_or("nobody in particular", maker_name);
+        let mut maker = self.maker;
+        let shown = ComboBox::from_id_salt("maker")
+            .selected_text(name(maker))
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut maker, None, name(None));
+                for known in Convention::ALL {
+                    ui.selectable_value(&mut maker, Some(known), name(Some(known)));
+                }
+            });
+        shown.response.labelled_by(label.id);
+        if maker != self.maker {
+            self.maker = maker;
+            self.answers.reading = maker.map_or_else(ImageReading::default, Convention::reading);
+        }
+        let reading = &mut self.answers.reading;
+        group(ui, "What it is");
+        for (what, words) in KINDS {
+            ui.radio_value(&mut reading.what, what, words);
+        }
+        if reading.what == Some(ImageAs::Picture) {
+            return;
+        }
+        group(ui, "Black");
+        ui.radio_value(&mut reading.black, Black::Warp, "warp up");
+        ui.radio_value(&mut reading.black, Black::Weft, "weft up");
+        group(ui, "End 1 and pick 1 meet");
+        for (corner, words) in CORNERS {
+            ui.radio_value(&mut reading.corner, corner, words);
+        }
+        ui.checkbox(&mut reading.mirror, "Exchange left and right: Z becomes S");
+        group(ui, "Regions and yarns are told apart by");
+        ui.radio_value(&mut reading.key, Key::Rgb, "their colour");
+        ui.radio_value(&mut reading.key, Key::Index, "their place in the palette");
+        group(ui, "Sett");
+        let mut own = self.answers.sett.is_some();
+        if ui
+            .checkbox(&mut own, "I know it better than the file")
+            .changed()
+        {
+            self.answers.sett = own.then(|| self.stated_sett());
+        }
+        if let Some((ends, picks)) = &mut self.answers.sett {
+            for (value, name) in [(ends, "ends/cm"), (picks, "picks/cm")] {
+                let field = DragValue::new(value).range(0.5..=400.0).speed(0.1);
+                let field = ui.add(field.suffix(format!(" {name}")));
+                field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
+            }
+        }
+    }
+
+    /// The sett that the file or its yarns have.
+    fn stated_sett(&self) -> (f32, f32) {
+        match self.read.answer() {
+            Some(Ok((opened, _))) => {
+                let sett = opened.design.sett();
+                (sett.ends.per_cm, sett.picks.per_cm)
+            }
+            _ => (24.0, 24.0),
+        }
+    }
+
+    fn preview_ui(&self, ui: &mut egui::Ui) {
+        let palette = Palette::current(ui);
+        if self.is_picture() {
+            let text = "It becomes regions of weaves in the pane Posterise.";
+            ui.label(RichText::new(text).color(palette.quiet));
+            return;
+        }
+        if let Some((_, texture)) = &self.shown {
+            let image = egui::Image::new((texture.id(), vec2(PREVIEW, PREVIEW)))
+                .fit_to_exact_size(vec2(PREVIEW, PREVIEW))
+                .alt_text("The drawdown that comes of it");
+            ui.add(image);
+        }
+        if self.read.is_working() {
+            ui.spinner();
+            return;
+        }
+        match self.read.answer() {
+            Some(Ok((opened, _))) => {
+                let design = &opened.design;
+                ui.label(format!("{} ends × {} picks", design.ends(), design.picks()));
+                for warning in &opened.warnings {
+                    ui.label(RichText::new(warning).small().color(palette.quiet));
+                }
+            }
+            Some(Err(problem)) => {
+                ui.horizontal_wrapped(|ui| {
+                    icons::show(ui, Grade::Error, palette.error);
+                    ui.label(RichText::new(format!("Error: {problem}")).color(palette.error));
+                });
+            }
+            None => {}
+        }
+    }
+
+    fn buttons_ui(&self, ui: &mut egui::Ui) -> Option<Answer> {
+        let mut answer = None;
+        ui.horizontal(|ui| {
+            if self.is_picture() {
+                if ui.button("Posterise").clicked() {
+                    answer = Some(Answer::Posterise(self.path.clone()));
+                }
+            } else {
+                let ready = match self.read.answer() {
+                    Some(Ok((opened, _))) if self.read.question() == Some(&self.answers) => {
+                        Some(opened)
+                    }
+                    _ => None,
+                };
+                let open = ui.add_enabled(ready.is_some(), Button::new("Open it"));
+                if let Some(opened) = ready.filter(|_| open.clicked()) {
+                    answer = Some(Answer::Open(Box::new(opened.clone())));
+                }
+            }
+            if ui.button("Cancel").clicked() {
+                answer = Some(Answer::Closed);
+            }
+        });
+        answer
+    }
+}
+
+fn group(ui: &mut egui::Ui, title: &str) {
+    ui.add_space(tokens::GRID);
+    ui.label(RichText::new(title).strong());
+}
+
+fn maker_name(maker: Convention) -> &'static str {
+    match maker {
+        Convention::Tc2 => "TC2 (Digital Weaving Norway)",
+        Convention::Pointcarre => "Pointcarré",
+        Convention::ArahWeave => "ArahWeave or ArahPaint",
+    }
+}
