@@ -124,10 +124,13 @@ class Flow:
         self.desk.fill("Command to find", "field", typed)
         self.desk.gone("Command to find")
 
+    def told_of_cloth(self):
+        """What the status line says of the picture of the cloth."""
+        return self.desk.sees(" spp · ").name
+
     def passes(self):
         """Samples a pixel of the cloth that is shown."""
-        found = re.match(r"(\d+) spp", self.desk.sees(" spp · ").name)
-        return int(found.group(1)) if found else 0
+        return int(re.match(r"(\d+) spp", self.told_of_cloth()).group(1))
 
     # The way.
 
@@ -222,14 +225,22 @@ class Flow:
         require(self.yarns_of(self.save_as("own again.ron")) == own, "not undone")
 
     def watches_the_preview(self):
+        """Closer: first sight at once, then traced pictures over it."""
         desk = self.desk
-        cloth = desk.sees("Cloth of ").rect
-        desk.until("more than one pass", lambda: self.passes() > 1, 240)
-        seen = lambda: desk.picture().crop(cloth)
-        desk.until("cloth", lambda: seen().colours() > 200)
-        before, earlier = seen(), self.passes()
-        desk.until("more passes", lambda: self.passes() > earlier, 240)
-        desk.until("another picture", lambda: seen().unlike(before) > 0.01)
+        node = desk.sees("Cloth of ")
+        seen = lambda: desk.picture().crop(node.rect)
+        before = desk.until("cloth", lambda: self.drawn(seen()))
+        desk.move(*middle(node))
+        desk.key("plus")
+        desk.until("a closer look", lambda: seen().unlike(before) > 0.1)
+        desk.until("a traced picture", lambda: self.passes() > 0, 240)
+        traced, known = seen(), self.told_of_cloth()
+        desk.until("a better one", lambda: self.told_of_cloth() != known, 240)
+        desk.until("another picture", lambda: seen().unlike(traced) > 0.005)
+
+    def drawn(self, picture):
+        """A picture, if there is more in it than the ground."""
+        return picture if picture.colours() > 200 else None
 
     def holds_the_pick_glass(self):
         desk = self.desk
