@@ -103,9 +103,7 @@ class Flow:
     def reach(self, name, role=None):
         """Turns the wheel over the panes below until what is called `name` can be clicked."""
         desk = self.desk
-        left, top, width, _ = desk.still("Log", "tab").rect
-        top, low = top + 28, desk.size[1] - 32
-        del left, width
+        top, low = desk.still("Log", "tab").rect[1] + 28, desk.size[1] - 32
 
         def seen():
             node = desk.find(name, role)
@@ -178,7 +176,8 @@ class Flow:
 
     def posterises_a_photograph(self):
         desk = self.desk
-        self.show("Posterise")
+        desk.key("alt+5")
+        desk.sees("Picture", "field")
         desk.fill("Picture", "field", PHOTOGRAPH)
         desk.fill("Ends", "number", 120)
         desk.fill("Colours", "number", 3)
@@ -216,7 +215,7 @@ class Flow:
         desk.click("Herringbone", "button")
         desk.sees("Drawdown of Herringbone")
         own = self.yarns_of(self.save_as("own.ron"))
-        self.next_colourway()
+        desk.key("shift+c")
         desk.sees("Herringbone *")
         other = self.yarns_of(self.save_as("other.ron"))
         require(own != other, f"still {own}")
@@ -331,15 +330,6 @@ class Flow:
         survives_a_kill,
         ends_and_offers_nothing,
     ]
-
-    # Commands with keys of their own.
-
-    def show(self, pane):
-        del pane
-        self.desk.key("alt+5")
-
-    def next_colourway(self):
-        self.desk.key("shift+c")
 
 
 def main(arguments):
