@@ -217,7 +217,7 @@ smoke_lost_device() {
 window_by_hand() {
     local status=0
     have python3 || { lacks "python3, and with it the window by hand"; return 0; }
-    python3 tests/window/by_hand.py "$target/release/pickglass" "$target/window" || status=$?
+    python3 -B tests/window/by_hand.py "$target/release/pickglass" "$target/window" || status=$?
     if ((status == 2)); then
         lacks "what the window is driven by hand with (xdotool dbus at-spi2-core)"
         return 0

@@ -103,9 +103,7 @@ class Flow:
     def reach(self, name, role=None):
         """Turns the wheel over the panes below until what is called `name` can be clicked."""
         desk = self.desk
-        left, top, width, _ = desk.still("Log", "tab").rect
-        top, low = top + 28, desk.size[1] - 32
-        del left, width
+        top, low = desk.still("Log", "tab").rect[1] + 28, desk.size[1] - 32
 
         def seen():
             node = desk.find(name, role)
@@ -124,10 +122,13 @@ class Flow:
         self.desk.fill("Command to find", "field", typed)
         self.desk.gone("Command to find")
 
+    def told_of_cloth(self):
+        """What the status line says of the picture of the cloth."""
+        return self.desk.sees(" spp · ").name
+
     def passes(self):
         """Samples a pixel of the cloth that is shown."""
-        found = re.match(r"(\d+) spp", self.desk.sees(" spp · ").name)
-        return int(found.group(1)) if found else 0
+        return int(re.match(r"(\d+) spp", self.told_of_cloth()).group(1))
 
     # The way.
 
@@ -175,7 +176,8 @@ class Flow:
 
     def posterises_a_photograph(self):
         desk = self.desk
-        self.show("Posterise")
+        desk.key("alt+5")
+        desk.sees("Picture", "field")
         desk.fill("Picture", "field", PHOTOGRAPH)
         desk.fill("Ends", "number", 120)
         desk.fill("Colours", "number", 3)
@@ -213,7 +215,7 @@ class Flow:
         desk.click("Herringbone", "button")
         desk.sees("Drawdown of Herringbone")
         own = self.yarns_of(self.save_as("own.ron"))
-        self.next_colourway()
+        desk.key("shift+c")
         desk.sees("Herringbone *")
         other = self.yarns_of(self.save_as("other.ron"))
         require(own != other, f"still {own}")
@@ -222,14 +224,22 @@ class Flow:
         require(self.yarns_of(self.save_as("own again.ron")) == own, "not undone")
 
     def watches_the_preview(self):
+        """Closer: first sight at once, then traced pictures over it."""
         desk = self.desk
-        cloth = desk.sees("Cloth of ").rect
-        desk.until("more than one pass", lambda: self.passes() > 1, 240)
-        seen = lambda: desk.picture().crop(cloth)
-        desk.until("cloth", lambda: seen().colours() > 200)
-        before, earlier = seen(), self.passes()
-        desk.until("more passes", lambda: self.passes() > earlier, 240)
-        desk.until("another picture", lambda: seen().unlike(before) > 0.01)
+        node = desk.sees("Cloth of ")
+        seen = lambda: desk.picture().crop(node.rect)
+        before = desk.until("cloth", lambda: self.drawn(seen()))
+        desk.move(*middle(node))
+        desk.key("plus")
+        desk.until("a closer look", lambda: seen().unlike(before) > 0.1)
+        desk.until("a traced picture", lambda: self.passes() > 0, 240)
+        traced, known = seen(), self.told_of_cloth()
+        desk.until("a better one", lambda: self.told_of_cloth() != known, 240)
+        desk.until("another picture", lambda: seen().unlike(traced) > 0.005)
+
+    def drawn(self, picture):
+        """A picture, if there is more in it than the ground."""
+        return picture if picture.colours() > 200 else None
 
     def holds_the_pick_glass(self):
         desk = self.desk
@@ -320,15 +330,6 @@ class Flow:
         survives_a_kill,
         ends_and_offers_nothing,
     ]
-
-    # Commands with keys of their own.
-
-    def show(self, pane):
-        del pane
-        self.desk.key("alt+5")
-
-    def next_colourway(self):
-        self.desk.key("period")
 
 
 def main(arguments):

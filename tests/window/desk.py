@@ -6,7 +6,6 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
 import pictures
@@ -289,4 +288,3 @@ class Desk:
 
 def say(text):
     print(f"   {text}", flush=True)
-    sys.stdout.flush()

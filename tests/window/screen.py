@@ -5,16 +5,13 @@ import collections
 from bus import Bus, BusError
 
 ROLES = {
-    "label": 29,
-    "checkbox": 7,
     "button": 43,
-    "slider": 51,
     "number": 52,
     "tab": 62,
     "field": 79,
 }
-# Bits of the first word of a state set.
-FOCUSED, ENABLED, CHECKED = 12, 8, 4
+# A bit of the first word of a state set.
+FOCUSED = 12
 
 _ACCESSIBLE = "org.a11y.atspi.Accessible"
 _ROOT = "/org/a11y/atspi/accessible/root"
