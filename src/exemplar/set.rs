@@ -79,11 +79,7 @@ pub fn common_grid(
             return Err(ExemplarError::Pitch(side));
         }
     }
-    let side = |pitch: f32| {
-        let fine = (pitch * 1000.0 / VOXEL_UM) as usize;
-        let fine = fine.clamp(BLOCK_SIDE[0], BLOCK_SIDE[1]);
-        ((fine >> level.min(4)).next_multiple_of(BRICK)).max(BRICK)
-    };
+    let side = |pitch: f32| voxels_along(pitch, level);
     let mut reach = 0.0f32;
     for pair in pairs {
         pair.warp.check()?;
@@ -105,6 +101,29 @@ pub fn common_grid(
         voxel_mm: Vec3::new(vx, vy, vz),
         level,
     })
+}
+
+/// Voxels along a block's side of `pitch` mm at a level.
+fn voxels_along(pitch: f32, level: u32) -> usize {
+    let fine = (pitch * 1000.0 / VOXEL_UM) as usize;
+    let fine = fine.clamp(BLOCK_SIDE[0], BLOCK_SIDE[1]);
+    ((fine >> level.min(4)).next_multiple_of(BRICK)).max(BRICK)
+}
+
+impl VoxelGrid {
+    /// Geometric mean of a voxel's sides, µm: of this grid, and of level 0 at its spacing.
+    pub fn voxel_um(&self) -> [f32; 2] {
+        let pitch = [
+            self.voxel_mm.x * self.block[0] as f32,
+            self.voxel_mm.y * self.block[1] as f32,
+        ];
+        let fine = pitch.map(|pitch| pitch / voxels_along(pitch, 0) as f32);
+        [
+            self.voxel_mm.element_product().cbrt(),
+            (fine[0] * fine[1]).sqrt(),
+        ]
+        .map(|mm| 1000.0 * mm)
+    }
 }
 
 impl ExemplarSet {

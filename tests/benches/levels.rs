@@ -36,10 +36,10 @@ const SPP: u32 = 32;
 /// Weaves that the corrections are measured on, from both sides.
 const WEAVES: [&str; 4] = ["plain", "2/2 twill", "7/1 satin", "1/7 satin"];
 /// Layers of cloth on each other in a measurement: alone, and opaque.
-const LAYERS: [u32; 2] = [1, 3];
+const LAYERS: [u32; 2] = [1, 2];
 /// Paths and rays a measurement.
-const PATHS: u32 = 1 << 16;
-const RAYS: u32 = 1 << 18;
+const PATHS: u32 = 1 << 13;
+const RAYS: u32 = 1 << 15;
 /// Exponents of the fill that are tried.
 const GAMMAS: [f32; 2] = [0.8, 3.0];
 
@@ -179,7 +179,7 @@ fn gamma(family: Family, voxel_um: f32, cloths: &[ClothVolume], wanted: f64) -> 
     };
     let [mut low, mut high] = GAMMAS;
     // More of γ lets through more light.
-    for _ in 0..9 {
+    for _ in 0..7 {
         let middle = 0.5 * (low + high);
         if excess(middle) < 0.0 {
             low = middle;
@@ -214,10 +214,7 @@ fn fit_all(write: bool, chosen: &[String]) {
         let cloths = designs.each_ref().map(|design| cloth(design, 0));
         let through: f64 = cloths.iter().map(transmittance).sum();
         let fine: Vec<Light> = cloths.iter().flat_map(light).collect();
-        let um = |cloth: &ClothVolume| {
-            let size = cloth.sets()[0].grid.voxel_mm;
-            1000.0 * (size.x * size.y * size.z).cbrt()
-        };
+        let um = |cloth: &ClothVolume| cloth.sets()[0].grid.voxel_um()[0];
         table += &entry(&LevelCorrection::none(family, um(&cloths[0])));
         eprintln!(
             "{} level 0: voxels of {:.2} µm, lets through {:.4}, {:.0} s",

@@ -215,7 +215,7 @@ class Flow:
         desk.click("Herringbone", "button")
         desk.sees("Drawdown of Herringbone")
         own = self.yarns_of(self.save_as("own.ron"))
-        desk.key("shift+c")
+        desk.key("period")
         desk.sees("Herringbone *")
         other = self.yarns_of(self.save_as("other.ron"))
         require(own != other, f"still {own}")

@@ -154,7 +154,7 @@ pub enum Menu {
 
 impl Menu {
     /// All menus, from the left.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::File,
         Self::Edit,
         Self::Weave,

@@ -63,14 +63,29 @@ impl LevelCorrection {
         }
     }
 
-    /// The correction of a family on a grid, between the measured ones; `None` for level
-    /// 0, which stands for itself, and where nothing was measured.
+    /// The correction of a family on a grid; `None` for level 0, which stands for itself,
+    /// and where nothing was measured. Where level 0 is itself coarser than the voxels that
+    /// the table starts from, what it would need is taken off.
     pub fn of(family: Family, grid: &VoxelGrid) -> Option<Self> {
         if grid.level == 0 {
             return None;
         }
-        let size = grid.voxel_mm;
-        let voxel_um = 1000.0 * (size.x * size.y * size.z).cbrt();
+        let [coarse, fine] = grid.voxel_um();
+        let (coarse, fine) = (Self::at(family, coarse)?, Self::at(family, fine)?);
+        let one = Self::none(family, coarse.voxel_um);
+        let over = |coarse: [f32; TERMS], fine: [f32; TERMS], one: [f32; TERMS]| {
+            std::array::from_fn(|i| coarse[i] - fine[i] + one[i])
+        };
+        Some(Self {
+            gamma: coarse.gamma / fine.gamma,
+            single: over(coarse.single, fine.single, one.single),
+            multiple: over(coarse.multiple, fine.multiple, one.multiple),
+            ..one
+        })
+    }
+
+    /// What voxels of a size need, between the measured sizes.
+    fn at(family: Family, voxel_um: f32) -> Option<Self> {
         let own = table().iter().filter(|row| row.family == family);
         let (mut below, mut above): (Option<&Self>, Option<&Self>) = (None, None);
         for row in own {

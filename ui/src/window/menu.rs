@@ -9,7 +9,6 @@ use pickglass::render::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
 
 use super::cloth::sheet::Kind as SheetKind;
-use super::panes::Pane;
 use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
 use crate::tokens::{self, Palette};
 
