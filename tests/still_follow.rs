@@ -97,13 +97,25 @@ fn following_is_making_anew() {
     ] {
         let (after, _) = followed(&cloth, &edited).unwrap();
         let anew = voxels(&made(&edited));
-        assert!(voxels(&after) == anew, "{what}");
+        let other = voxels(&after);
+        let off = other.iter().zip(&anew).filter(|(a, b)| a != b);
+        let off: Vec<_> = off.take(3).collect();
+        assert!(other == anew, "{what}: {off:?}");
         assert!(!after.cloth().unbuilt().contains(&true), "{what}");
         // Control: the cloth as it was is another.
         assert!(voxels(&cloth) != anew, "{what}");
         // And back.
         let (back, built) = followed(&after, &before).unwrap();
-        assert!(voxels(&back) == voxels(&cloth) && !built, "{what}");
+        assert!(!built, "{what}: back again");
+        let (back, own) = (voxels(&back), voxels(&cloth));
+        let off = back.iter().zip(&own).filter(|(a, b)| a != b);
+        let off: Vec<_> = off.collect();
+        assert!(
+            back == own,
+            "{what}: back again: {} {:?}",
+            off.len(),
+            off.first()
+        );
     }
 }
 

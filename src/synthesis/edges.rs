@@ -159,7 +159,7 @@ impl EdgeFix {
         fix.horizontal = Basis::horizontal(gram, wanted, bx, by);
         job.check()?;
         job.report("edge fixing", 0.4);
-        fix.project(heights);
+        fix.project(heights, predicted);
         job.check()?;
         fix.bounds = Bounds::new(&fix, catalogue);
         job.report("edge fixing", 1.0);
@@ -412,9 +412,10 @@ impl EdgeFix {
     }
 
     /// Projects the heights of all edges on the bases.
-    fn project(&mut self, heights: &[EdgeHeights]) {
+    fn project(&mut self, heights: &[EdgeHeights], predicted: &[EdgeHeights]) {
         for face in Face::ALL {
-            let mean = mean_height(heights, face);
+            // Of the prediction: which exemplars are built does not move a bit of the rest.
+            let mean = mean_height(predicted, face);
             for heights in heights {
                 for block in 0..self.blocks as u16 {
                     for side in Side::ALL {

@@ -307,7 +307,7 @@ fn regions_are_added_given_yarns_and_joined() {
     let yarns = format!("Yarns of {first}: design's yarns");
     harness.get_by_label(&yarns).click();
     harness.run_steps(3);
-    harness.get_by_label("Weft").click();
+    harness.get_by_label_contains("Weft").click();
     harness.run_steps(3);
     let yarn = harness.state().document.design().yarns()[0].name.clone();
     harness.get_by_label(&yarn).click();

@@ -58,11 +58,11 @@ fn keys_go_through_the_colourways_by_name() {
     window.key_press(Key::Comma);
     window.run_steps(2);
     assert_eq!(in_use(&window), "moss");
-    window.key_press_modifiers(Modifiers::ALT, Key::Num4);
+    window.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::ALT), Key::Num4);
     window.run_steps(2);
     assert_eq!(in_use(&window), "wine");
     // There is no fifth, and the one in use stays.
-    window.key_press_modifiers(Modifiers::ALT, Key::Num5);
+    window.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::ALT), Key::Num5);
     window.run_steps(2);
     assert_eq!(in_use(&window), "wine");
     window.key_press(Key::Z);
@@ -195,7 +195,9 @@ fn a_reference_lies_over_the_draft_and_comes_back_with_its_design() {
     wait_for(&mut window, "the picture", |window| {
         window.state().draft.reference.is_some()
     });
-    assert!(shows(&window, "Take it away"));
+    wait_for(&mut window, "its controls", |window| {
+        shows(window, "Take it away")
+    });
     // The weave knows nothing of it.
     let now = window.state().document().expect("open");
     assert!(!now.is_modified() && now.design() == document.design());

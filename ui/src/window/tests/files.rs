@@ -229,9 +229,10 @@ fn the_draft_is_printed_and_exported() {
 fn presets_are_offered_as_thumbnails() {
     let mut window = build(builder(), None);
     wait_for(&mut window, "the thumbnails", |window| {
-        shows(window, "Herringbone") || says(window, "erringbone")
+        shows(window, "Herringbone")
     });
-    window.get_by_label_contains("Herringbone").click();
+    window.run_steps(3);
+    window.get_by_label("Herringbone").click();
     wait_for(&mut window, "the design", |window| {
         shows(window, "Drawdown of Herringbone")
     });

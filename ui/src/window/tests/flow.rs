@@ -181,7 +181,7 @@ fn a_photograph_becomes_three_weaves_and_one_is_reassigned() {
     (window.get_all_by_label_contains("basket"))
         .find(|node| node.accesskit_node().role() == Role::Button)
         .expect("a basket weave")
-        .click_accesskit();
+        .click();
     window.run_steps(4);
     let after = regions(&window);
     assert!(after.palette()[0].fill != fills[0], "another weave");

@@ -86,7 +86,9 @@ fn a_lost_device_has_the_work_written_and_opened_again() {
     wait_for(&mut again, "the work", |window| {
         shows(window, "Drawdown of Oxford")
     });
-    assert!(says(&again, "The graphics device was lost"));
+    wait_for(&mut again, "the message", |window| {
+        says(window, "The graphics device was lost")
+    });
     let document = again.state().document().expect("open");
     assert_eq!(*document.drawdown(), changed);
     assert!(modified(&again));

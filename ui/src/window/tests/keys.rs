@@ -208,13 +208,13 @@ fn the_cloth_is_looked_at_from_all_sides() {
     press(&mut window, Key::T);
     assert_eq!(asked(&window).view, View::Face);
 
-    press(&mut window, Key::Comma);
+    press(&mut window, Key::PageDown);
     let lowered = asked(&window).eye.expect("turned");
     assert_eq!((lowered.azimuth, lowered.elevation), (-90, 85));
     press(&mut window, Key::OpenBracket);
     assert_eq!(asked(&window).eye.expect("turned").azimuth, -95);
     press(&mut window, Key::CloseBracket);
-    press(&mut window, Key::Period);
+    press(&mut window, Key::PageUp);
     let raised = asked(&window).eye.expect("turned");
     assert_eq!((raised.azimuth, raised.elevation), (-90, 90));
     press(&mut window, Key::Num0);

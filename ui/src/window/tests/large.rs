@@ -139,8 +139,11 @@ fn the_cloth_of_a_large_panel_is_traced_where_one_looks() {
     wait_for(&mut window, "first sight of all", |window| {
         says(window, "look closer to refine")
     });
-    let shown = window.state().preview.pane.shown.as_ref();
-    let width = shown.and_then(|shown| shown.still.width_mm);
+    let width = window
+        .state()
+        .preview
+        .asked()
+        .and_then(|still| still.width_mm);
     assert!(width.is_some_and(|mm| mm > 1000.0), "{width:?}");
     assert!(!says(&window, "Error"));
 }

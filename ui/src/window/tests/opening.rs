@@ -71,6 +71,11 @@ fn a_dropped_file_opens() {
     });
 }
 
+/// Lets a form that has changed its size find its place.
+fn settle(window: &mut Window) {
+    window.run_steps(4);
+}
+
 /// A checked image of 8 × 4 pixels, its lower left pixel black.
 fn checked(folder: &std::path::Path) -> PathBuf {
     let path = folder.join("checked.png");
@@ -98,12 +103,14 @@ fn an_image_is_asked_about_beside_a_preview() {
         });
         assert!(window.state().document().is_none(), "nothing opens unasked");
         if let Some(black) = black {
+            settle(&mut window);
             window.get_by_label(black).click();
             window.run_steps(2);
             wait_for(&mut window, "the preview again", |window| {
                 says(window, "black = weft up")
             });
         }
+        settle(&mut window);
         window.get_by_label("Open it").click();
         wait_for(&mut window, "the design", |window| {
             says(window, "Drawdown of ")
@@ -124,6 +131,7 @@ fn an_image_that_is_given_up_leaves_what_was_open() {
     wait_for(&mut window, "the form", |window| {
         says(window, "Open the image")
     });
+    settle(&mut window);
     window.get_by_label("Cancel").click();
     window.run_steps(3);
     assert!(!says(&window, "Open the image"));
@@ -144,10 +152,12 @@ fn a_photograph_goes_on_to_be_posterised() {
     wait_for(&mut window, "the form", |window| {
         says(window, "Open the image")
     });
+    settle(&mut window);
     window
         .get_by_label("A photograph, to be posterised")
         .click();
     window.run_steps(2);
+    settle(&mut window);
     window.get_by_label("Posterise").click();
     wait_for(&mut window, "the picture", |window| {
         shows(window, "Make it the design")
