@@ -153,17 +153,14 @@ pub fn measure(
         .collect::<Result<_, Cancelled>>()?;
     let paths = (batches.len() as u32 * ROW * ROW) as f64;
     let mut mean = Light::dark();
-    for (sums, part) in batches.iter().flat_map(|batch| mean_places(batch)) {
-        mean.0[sums]
-            .iter_mut()
-            .zip(part)
-            .for_each(|(m, p)| *m += p / paths);
+    for part in &batches {
+        for (sums, more) in mean.0.iter_mut().zip(&part.0) {
+            sums.iter_mut()
+                .zip(more)
+                .for_each(|(sum, more)| *sum += more / paths);
+        }
     }
     Ok(mean)
-}
-
-fn mean_places(light: &Light) -> impl Iterator<Item = (usize, &[f64; 2 * TERMS])> {
-    light.0.iter().enumerate()
 }
 
 /// A ray onto one of the cells of a patch of cloth.
