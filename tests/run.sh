@@ -236,6 +236,8 @@ smoke_no_display() {
     [[ -s $folder/cloth.png ]] || { say "   cloth.png was not written"; return 1; }
 }
 
+# Builds the program as well: `cargo build` alone would give the library other features of
+# its dependencies than the tests need, and all of it would be built twice.
 run_tests() {
     cargo test --release --workspace --quiet --no-fail-fast
 }
@@ -256,7 +258,6 @@ check_all() {
     if component clippy clippy; then
         step "lints" cargo clippy --release --workspace --all-targets --quiet -- -D warnings
     fi
-    step "build" cargo build --release --workspace --quiet
     step "tests" run_tests
     step "colours" print_colours
     step "documentation" run_docs

@@ -454,7 +454,7 @@ mod tests {
     #[test]
     fn sizes_from_outside_are_checked_before_memory() {
         assert!(WeavePattern::try_new(1 << 14, 1 << 14).is_ok());
-        assert!(WeavePattern::try_new((1 << 14) + 1, 1 << 14).is_err());
+        assert!(WeavePattern::try_new((1 << 15) + 1, 1 << 14).is_err());
         assert!(WeavePattern::try_new(u64::MAX, u64::MAX).is_err());
         assert!(WeavePattern::try_new(0, 5).is_err());
     }

@@ -52,7 +52,12 @@ pub(super) fn threading(work: &mut Work, rows: &Rows) -> Result<(), EditError> {
     Ok(())
 }
 
-fn rebuilt(draft: &Draft, threading: Ties, lifting: Lifting) -> Result<Draft, EditError> {
+/// A draft of the same frame with other threading and lifting.
+pub(super) fn rebuilt(
+    draft: &Draft,
+    threading: Ties,
+    lifting: Lifting,
+) -> Result<Draft, EditError> {
     let (shafts, treadles) = (draft.shafts(), draft.treadles());
     Ok(Draft::new(
         shafts,

@@ -279,14 +279,7 @@ fn draft_window(
             treadling: lifts(treadling),
         },
     };
-    let (shafts, treadles) = (draft.shafts(), draft.treadles());
-    Ok(Draft::new(
-        shafts,
-        treadles,
-        draft.shed(),
-        threading,
-        lifting,
-    )?)
+    super::drafts::rebuilt(draft, threading, lifting)
 }
 
 /// Left and right, or top and bottom, change places.

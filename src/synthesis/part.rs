@@ -136,7 +136,7 @@ mod tests {
             },
         ] {
             let stretch = Stretch {
-                ends: 33..41,
+                ends: 33..36,
                 picks: -25..31,
             };
             let columns = stretch.columns(20, 10, lattice).unwrap();

@@ -338,10 +338,8 @@ mod tests {
     #[test]
     fn lamps_stand_all_round() {
         let sum: Vec3 = lamps().iter().map(|sun| sun.towards).sum();
-        assert!(
-            sum.x.abs() < 0.3 && sum.y.abs() < 0.3 && sum.z > 5.0,
-            "{sum}"
-        );
+        // More lamps than azimuths an elevation: nearly balanced.
+        assert!(sum.truncate().length() < 0.08 * sum.z, "{sum}");
         assert!(
             lamps()
                 .iter()

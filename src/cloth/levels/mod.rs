@@ -30,6 +30,10 @@ pub mod fit;
 /// Terms of a gain's series.
 pub const TERMS: usize = 5;
 
+/// The coarsest level that is corrected. Beyond it the exponents that keep the
+/// transmittance would let the lower yarn be seen through the upper one.
+const COARSEST: u32 = 2;
+
 /// A gain outside is not believed: the series is not meant to run away between the
 /// directions that it was measured in.
 const GAINS: std::ops::RangeInclusive<f32> = 0.4..=2.5;
@@ -64,10 +68,10 @@ impl LevelCorrection {
     }
 
     /// The correction of a family on a grid; `None` for level 0, which stands for itself,
-    /// and where nothing was measured. Where level 0 is itself coarser than the voxels that
-    /// the table starts from, what it would need is taken off.
+    /// beyond [`COARSEST`], and where nothing was measured. Where level 0 is itself coarser
+    /// than the voxels that the table starts from, what it would need is taken off.
     pub fn of(family: Family, grid: &VoxelGrid) -> Option<Self> {
-        if grid.level == 0 {
+        if grid.level == 0 || grid.level > COARSEST {
             return None;
         }
         let [coarse, fine] = grid.voxel_um();
@@ -202,12 +206,13 @@ mod tests {
             let rows = table().iter().filter(|row| row.family == family);
             assert!(rows.count() >= 3, "{family:?}");
             assert_eq!(LevelCorrection::of(family, &grid(5.0, 0)), None);
+            assert_eq!(LevelCorrection::of(family, &grid(40.0, 3)), None);
             for row in table().iter().filter(|row| row.family == family) {
                 let found = LevelCorrection::of(family, &grid(row.voxel_um, 1)).unwrap();
                 assert!((found.gamma - row.gamma).abs() < 1e-3, "{row:?} {found:?}");
             }
             // Beyond the ends the nearest holds.
-            let far = LevelCorrection::of(family, &grid(1e4, 4)).unwrap();
+            let far = LevelCorrection::of(family, &grid(1e4, 2)).unwrap();
             assert!(far.gain(&arrival(1, 0.7)).is_finite());
         }
     }

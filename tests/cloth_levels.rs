@@ -1,0 +1,60 @@
+//! Coarse levels show as much light as level 0, and let as much through; what averaging
+//! alone does is the control.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
+use std::sync::Arc;
+
+use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::presets;
+use pickglass::job::Job;
+use pickglass::still::{self, StillRequest, Stop};
+
+/// Mean radiance and coverage of a shirting whose gaps are seen.
+fn shirting(level: u32, corrected: bool) -> [f64; 2] {
+    let design = Arc::new(presets::design("oxford").unwrap().unwrap());
+    let dial = |name: &str, value: String| (name.to_owned(), value);
+    let request = StillRequest {
+        width: 56,
+        height: 56,
+        width_mm: Some(6.0),
+        dials: vec![
+            dial("level", level.to_string()),
+            dial(
+                "level-correction",
+                if corrected { "on" } else { "off" }.to_owned(),
+            ),
+        ],
+        stop: Stop {
+            spp: Some(24),
+            ..Stop::default()
+        },
+        ..StillRequest::default()
+    };
+    let cloth = still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+    let still = still::render(&cloth, &request, &Job::new(), &mut |_| {}).unwrap();
+    assert_eq!(still.report.majorant_violations, 0);
+    let pixels = still.film.pixels();
+    let count = pixels.len() as f64;
+    let light = |pixel: &pickglass::render::Pixel| f64::from(pixel.mean().element_sum()) / 3.0;
+    [
+        pixels.iter().map(light).sum::<f64>() / count,
+        (pixels.iter().map(|pixel| f64::from(pixel.alpha()))).sum::<f64>() / count,
+    ]
+}
+
+#[test]
+fn coarse_levels_keep_light_and_coverage() {
+    let [light, cover] = shirting(0, true);
+    for (level, least_light, least_cover) in [(1, 0.012, 0.004), (2, 0.03, 0.008)] {
+        let off = |[coarse, covered]: [f64; 2]| [coarse / light - 1.0, covered - cover];
+        let averaged = off(shirting(level, false));
+        let corrected = off(shirting(level, true));
+        println!("level {level}: averaged {averaged:.4?}, corrected {corrected:.4?}");
+        assert!(corrected[0].abs() < 0.02, "{corrected:?}");
+        assert!(corrected[1].abs() < 0.006, "{corrected:?}");
+        assert!(
+            averaged[0] > least_light && averaged[1] > least_cover,
+            "{averaged:?}"
+        );
+    }
+}
