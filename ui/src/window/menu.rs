@@ -262,6 +262,8 @@ pub fn pressed(ctx: &egui::Context) -> Option<Command> {
             // In a text field, select all, undo and the like mean its text.
             command_of(*key, *modifiers, typing)
                 .filter(|command| !typing || outside_text(*command))
+                // Its key holds the glass as long as it is down, and nothing more.
+                .filter(|command| *command != Command::Glass)
                 .map(|command| (place, command))
         })?;
         input.events.remove(place);

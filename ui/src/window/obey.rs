@@ -87,7 +87,7 @@ impl App {
             Command::ContactSheet => self.show_sheet(SheetKind::All),
             Command::SideBySide => self.show_sheet(SheetKind::Two),
             Command::Use(tool) => self.draft.take_tool(ctx, tool),
-            Command::Glass => self.preview.pin_glass(ctx),
+            Command::Glass => self.preview.pin_glass(),
             Command::SwapColours => {
                 self.draft.yarns.swap(0, 1);
                 self.draft.regions.swap(0, 1);

@@ -347,11 +347,9 @@ impl Preview {
         }
     }
 
-    /// Holds the pick glass without a key, or lets go of it; the key itself only holds it.
-    pub fn pin_glass(&mut self, ctx: &egui::Context) {
-        if !ctx.input(|input| input.key_down(glass::KEY)) {
-            self.glass.pin();
-        }
+    /// Holds the pick glass without a key, or lets go of it.
+    pub fn pin_glass(&mut self) {
+        self.glass.pin();
     }
 
     /// What lies over the picture.

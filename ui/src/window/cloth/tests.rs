@@ -117,9 +117,8 @@ fn the_glass_is_held_by_the_keyboard_alone() {
     assert!(!has_picture(&harness));
 
     // From a menu it stays until Esc.
-    let ctx = harness.ctx.clone();
     if let Some(preview) = &mut harness.state_mut().preview {
-        preview.pin_glass(&ctx);
+        preview.pin_glass();
     }
     wait(&mut harness, "the glass", Preview::glass_has_picture);
     harness.key_press(Key::Escape);
