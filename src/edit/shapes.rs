@@ -1,6 +1,6 @@
 //! Pencil, line, rectangle and ellipse: from pointer positions to crossings.
 //!
-//! All are pure: they give spans of the endless cloth, which a [`Surface`](super::Surface)
+//! All are pure: they give spans of the endless cloth, which a [`Surface`]
 //! wraps by the repeat. Corners are held within its reach first.
 
 use super::symmetry::{Point, Span, Surface};

@@ -32,7 +32,7 @@ pub const TERMS: usize = 5;
 
 /// The coarsest level that is corrected. Beyond it the exponents that keep the
 /// transmittance would let the lower yarn be seen through the upper one.
-const COARSEST: u32 = 2;
+pub const COARSEST: u32 = 2;
 
 /// A gain outside is not believed: the series is not meant to run away between the
 /// directions that it was measured in.
