@@ -131,6 +131,20 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
+/// Extinction by fill of each set's warp and weft, as their families are corrected.
+fn extinctions(
+    sets: &[Arc<ExemplarSet>],
+    of: impl Fn(Family) -> Option<LevelCorrection>,
+) -> Arc<[[Extinction; 2]]> {
+    let extinction = |recipe: &YarnRecipe| {
+        let gamma = of(recipe.family).map_or(1.0, |correction| correction.gamma);
+        Extinction::new(recipe.full_extinction(), gamma)
+    };
+    (sets.iter())
+        .map(|set| [&set.pair.warp, &set.pair.weft].map(&extinction))
+        .collect()
+}
+
 /// The correction of a family's light and density on a grid, where it is wanted.
 fn correction(
     family: Family,
@@ -283,14 +297,7 @@ impl ClothVolume {
         let SynthesisSettings { seed, patch, .. } = settings.synthesis;
         let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
         let grid = sets.first().map_or_else(VoxelGrid::default, |set| set.grid);
-        let extinction = (sets.iter())
-            .map(|set| {
-                [&set.pair.warp, &set.pair.weft].map(|recipe| {
-                    let correction = correction(recipe.family, &grid, &settings);
-                    Extinction::new(recipe.full_extinction(), correction.as_ref())
-                })
-            })
-            .collect();
+        let extinction = extinctions(&sets, |family| correction(family, &grid, &settings));
         Ok(Self {
             grid,
             catalogue,
@@ -374,13 +381,7 @@ impl ClothVolume {
     /// measuring them. Level 0 is never corrected.
     pub fn with_corrections(mut self, of: impl Fn(Family) -> LevelCorrection) -> Self {
         if self.grid.level > 0 {
-            self.extinction = (self.sets.iter())
-                .map(|set| {
-                    [&set.pair.warp, &set.pair.weft].map(|recipe| {
-                        Extinction::new(recipe.full_extinction(), Some(&of(recipe.family)))
-                    })
-                })
-                .collect();
+            self.extinction = extinctions(&self.sets, |family| Some(of(family)));
             for correction in self.corrections.iter_mut().flatten() {
                 *correction = of(correction.family);
             }

@@ -118,9 +118,8 @@ pub fn measure(
     use rayon::prelude::*;
     let slide = RenderSettings::default().backing_slide_mm;
     let stack = Stack::new(cloth, layers, slide.into());
-    let top = cloth.height_range().1;
-    let patch = Vec2::new(cloth.ends().pitch(0) as f32, cloth.picks().pitch(0) as f32) * 24.0;
     let suns = lamps();
+    let path = path_to(&suns, &stack, ORDERS as u32, SHADOW_ROULETTE);
     // Each batch gives its own curve; their mean is the curve, their spread its error.
     let batches: Vec<[f64; NODES]> = (0..paths.div_ceil(BATCH).max(2))
         .into_par_iter()
@@ -128,16 +127,10 @@ pub fn measure(
             job.check()?;
             let mut orders = ByOrder(vec![0.0; ORDERS + 1]);
             let mut counters = Counters::default();
-            for path in 0..BATCH {
-                let mut random = Random::new(45, u64::from(batch), u64::from(path));
-                // The paths of a batch start in the cells of a square of their own each.
-                let cell = Vec2::new((path % ROW) as f32, (path / ROW) as f32);
-                let place = (cell + Vec2::from(random.pair())) / ROW as f32;
-                let ray = Ray {
-                    origin: (place * patch).extend(top + 1.0),
-                    direction: Vec3::NEG_Z,
-                };
-                path_to(&suns, &stack).trace(ray, &mut orders, &mut random, &mut counters);
+            for index in 0..BATCH {
+                let mut random = Random::new(45, u64::from(batch), u64::from(index));
+                let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
+                path.trace(ray, &mut orders, &mut random, &mut counters);
             }
             Ok(nodes_of(&orders.0).map(|sum| sum / f64::from(BATCH)))
         })
@@ -186,7 +179,32 @@ pub fn lamps() -> [Sun; AZIMUTHS] {
     })
 }
 
-fn path_to<'a, S>(suns: &'a [Sun], scatterer: &'a S) -> Path<'a, S, Dark, true, false> {
+/// A ray onto a patch of cloth. The rays of a batch start in the cells of a square of
+/// `row` × `row`, each in its own.
+pub(super) fn first_ray(
+    cloth: &ClothVolume,
+    row: u32,
+    index: u32,
+    direction: Vec3,
+    random: &mut Random,
+) -> Ray {
+    let patch = Vec2::new(cloth.ends().pitch(0) as f32, cloth.picks().pitch(0) as f32) * 24.0;
+    let cell = Vec2::new((index % row) as f32, (index / row) as f32);
+    let place = (cell + Vec2::from(random.pair())) / row as f32;
+    let above = (cloth.height_range().1 + 1.0) / direction.z.abs().max(0.1);
+    Ray {
+        origin: (place * patch).extend(0.0) - direction * above,
+        direction,
+    }
+}
+
+/// A path of a measurement: lamps alone, nothing behind the cloth, no roulette.
+pub(super) fn path_to<'a, S>(
+    suns: &'a [Sun],
+    scatterer: &'a S,
+    max_order: u32,
+    shadow_roulette: f32,
+) -> Path<'a, S, Dark, true, false> {
     Path {
         scatterer,
         suns,
@@ -197,9 +215,9 @@ fn path_to<'a, S>(suns: &'a [Sun], scatterer: &'a S) -> Path<'a, S, Dark, true, 
             facing: 1.0,
             albedo: 0.0,
         },
-        max_order: ORDERS as u32,
+        max_order,
         roulette_order: u32::MAX,
-        shadow_roulette: SHADOW_ROULETTE,
+        shadow_roulette,
         background: crate::render::Background::Transparent,
     }
 }

@@ -165,7 +165,14 @@ fn touched(before: &State, after: &State) -> Touched {
 struct Tiles(BTreeMap<(u32, u32), Rect>);
 
 impl Tiles {
-    fn add(&mut self, column: u32, row: u32, rect: Rect) {
+    /// Takes a stretch of a pick that differs, in the tile of a column and row.
+    fn add(&mut self, column: u32, row: u32, pick: u32, [end, ends]: [u32; 2]) {
+        let rect = Rect {
+            end,
+            pick,
+            ends,
+            picks: 1,
+        };
         let entry = self.0.entry((row, column)).or_insert(rect);
         *entry = entry.join(rect);
     }
@@ -177,16 +184,7 @@ impl Tiles {
                 if bits != 0 {
                     let end = 64 * column + bits.trailing_zeros();
                     let ends = 64 - bits.leading_zeros() - bits.trailing_zeros();
-                    self.add(
-                        column,
-                        row,
-                        Rect {
-                            end,
-                            pick,
-                            ends,
-                            picks: 1,
-                        },
-                    );
+                    self.add(column, row, pick, [end, ends]);
                 }
             }
         }
@@ -200,16 +198,7 @@ impl Tiles {
                 if let Some(first) = (0..mine.len()).find(differs) {
                     let last = (first..mine.len()).rev().find(differs).unwrap_or(first);
                     let (end, ends) = (64 * column + first as u32, (last - first + 1) as u32);
-                    self.add(
-                        column,
-                        row,
-                        Rect {
-                            end,
-                            pick,
-                            ends,
-                            picks: 1,
-                        },
-                    );
+                    self.add(column, row, pick, [end, ends]);
                 }
             }
         }

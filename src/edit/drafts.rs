@@ -124,13 +124,7 @@ pub(super) fn treadling(work: &mut Work, rows: &Rows) -> Result<(), EditError> {
         tieup: tieup.clone(),
         treadling,
     };
-    let draft = rebuilt(&draft, draft.threading().clone(), lifting)?;
-    put(
-        work,
-        draft,
-        Some(rows.iter().map(|(pick, _)| *pick).collect()),
-    );
-    Ok(())
+    relift(work, &draft, lifting, rows)
 }
 
 /// The shafts of some picks.
@@ -144,7 +138,12 @@ pub(super) fn lift_plan(work: &mut Work, rows: &Rows) -> Result<(), EditError> {
     };
     check(rows, "pick", plan.len())?;
     let lifting = Lifting::LiftPlan(plan.with_rows(rows));
-    let draft = rebuilt(&draft, draft.threading().clone(), lifting)?;
+    relift(work, &draft, lifting, rows)
+}
+
+/// Lifts some picks otherwise.
+fn relift(work: &mut Work, draft: &Draft, lifting: Lifting, rows: &Rows) -> Result<(), EditError> {
+    let draft = rebuilt(draft, draft.threading().clone(), lifting)?;
     put(
         work,
         draft,

@@ -192,7 +192,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
         // Density with which the present direction was drawn; infinite for the camera's.
         let mut density = f32::INFINITY;
         // What scattered last, and from where it was come upon.
-        let mut last = None;
+        let mut last: Option<(Vertex, Vec3)> = None;
         loop {
             let sheet = if PLANE {
                 self.plane.distance(&ray)
@@ -227,7 +227,6 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                         self.add_background(&ray, tally, &mut sample);
                         break;
                     };
-                    let vertex: Vertex = vertex;
                     if E::LIT {
                         let towards = ray.direction * self.turn;
                         let weight = if E::SAMPLED {

@@ -7,17 +7,16 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::{TERMS, terms};
 use crate::cloth::ClothVolume;
+use crate::cloth::colour::{first_ray, path_to};
 use crate::job::{Cancelled, Job};
-use crate::render::path::{Path, Plane, Tally};
-use crate::render::{
-    Arrival, Background, Counters, Dark, Random, Ray, RenderSettings, Scatterer, Stack, Sun,
-};
+use crate::render::path::Tally;
+use crate::render::{Arrival, Counters, Random, RenderSettings, Scatterer, Stack, Sun};
 
 /// Elevations of the lamps, degrees, and their azimuths round the cloth.
 const ELEVATIONS: [f32; 5] = [12.0, 22.0, 40.0, 60.0, 85.0];
@@ -119,21 +118,8 @@ pub fn measure(
     let slide = RenderSettings::default().backing_slide_mm;
     let stack = Stack::new(cloth, layers, slide.into());
     let suns = lamps();
-    let path: Path<'_, _, Dark, true, false> = Path {
-        scatterer: &stack,
-        suns: &suns,
-        environment: &Dark,
-        turn: Vec3::ONE,
-        plane: Plane {
-            z: 0.0,
-            facing: 1.0,
-            albedo: 0.0,
-        },
-        max_order: MOST_ORDERS,
-        roulette_order: u32::MAX,
-        shadow_roulette: SHADOW_ROULETTE * LAMPS as f32,
-        background: Background::Transparent,
-    };
+    let roulette = SHADOW_ROULETTE * LAMPS as f32;
+    let path = path_to(&suns, &stack, MOST_ORDERS, roulette);
     let batches: Vec<Light> = (0..paths.div_ceil(ROW * ROW).max(2))
         .into_par_iter()
         .map(|batch| {
@@ -145,7 +131,7 @@ pub fn measure(
             let mut counters = Counters::default();
             for index in 0..ROW * ROW {
                 let mut random = Random::new(11, u64::from(batch), u64::from(index));
-                let ray = first_ray(cloth, index, Vec3::NEG_Z, &mut random);
+                let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
                 path.trace(ray, &mut tally, &mut random, &mut counters);
             }
             Ok(tally.sums)
@@ -161,18 +147,6 @@ pub fn measure(
         }
     }
     Ok(mean)
-}
-
-/// A ray onto one of the cells of a patch of cloth.
-fn first_ray(cloth: &ClothVolume, index: u32, direction: Vec3, random: &mut Random) -> Ray {
-    let patch = Vec2::new(cloth.ends().pitch(0) as f32, cloth.picks().pitch(0) as f32) * 24.0;
-    let cell = Vec2::new((index % ROW) as f32, (index / ROW) as f32);
-    let place = (cell + Vec2::from(random.pair())) / ROW as f32;
-    let above = (cloth.height_range().1 + 1.0) / direction.z.abs().max(0.1);
-    Ray {
-        origin: (place * patch).extend(0.0) - direction * above,
-        direction,
-    }
 }
 
 /// Mean transmittance of a cloth, straight on and at 45° from two sides.
@@ -196,7 +170,7 @@ pub fn transmittance(cloth: &ClothVolume, rays: u32, job: &Job) -> Result<f64, C
             for index in 0..ROW * ROW {
                 let mut random = Random::new(12, u64::from(batch), u64::from(index));
                 let direction = directions[(batch as usize + index as usize) % 3];
-                let ray = first_ray(cloth, index, direction, &mut random);
+                let ray = first_ray(cloth, ROW, index, direction, &mut random);
                 let share = Scatterer::transmittance(
                     cloth,
                     &ray,

@@ -162,16 +162,11 @@ pub fn table() -> &'static [LevelCorrection] {
 pub(super) struct Extinction(Box<[f32; 256]>);
 
 impl Extinction {
-    /// Of matter whose extinction is `full` where a voxel is wholly filled.
-    pub fn new(full: f32, correction: Option<&LevelCorrection>) -> Self {
-        let gamma = correction.map_or(1.0, |correction| correction.gamma);
+    /// Of matter whose extinction is `full` where a voxel is wholly filled; γ = 1 corrects
+    /// nothing.
+    pub fn new(full: f32, gamma: f32) -> Self {
         Self(Box::new(std::array::from_fn(|fill| {
-            let fill = fill as f32 / 255.0;
-            // The plain product where nothing is corrected, to the last bit.
-            match correction {
-                Some(_) => fill.powf(gamma) * full,
-                None => fill * full,
-            }
+            (fill as f32 / 255.0).powf(gamma) * full
         })))
     }
 
@@ -241,12 +236,8 @@ mod tests {
 
     #[test]
     fn extinction_rises_with_the_fill_and_keeps_its_ends() {
-        let correction = LevelCorrection {
-            gamma: 1.3,
-            ..LevelCorrection::none(Family::Cotton, 20.0)
-        };
-        let plain = Extinction::new(80.0, None);
-        let thinned = Extinction::new(80.0, Some(&correction));
+        let plain = Extinction::new(80.0, 1.0);
+        let thinned = Extinction::new(80.0, 1.3);
         assert_eq!((plain.at(0), thinned.at(0)), (0.0, 0.0));
         assert_eq!((plain.most(), thinned.most()), (80.0, 80.0));
         for fill in 1..255u8 {

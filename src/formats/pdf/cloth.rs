@@ -1,6 +1,6 @@
 //! The cloth at true size, cut into pages, with a ruler to check the print by.
 
-use super::sheet::{Book, MARGIN, Page};
+use super::sheet::{BLACK, Book, GREY, MARGIN, Page};
 use super::{PdfError, Raster};
 use crate::design::{Design, Srgb, WeavePattern};
 
@@ -11,9 +11,6 @@ const HEAD: f32 = 12.0;
 const RULER: f32 = 10.0;
 /// The most crossings on a page, beyond which several share a pixel.
 const MOST_PIXELS: f32 = 4_000_000.0;
-
-const BLACK: Srgb = Srgb(0, 0, 0);
-const GREY: Srgb = Srgb(90, 90, 90);
 
 /// What of a page's width and height the cloth may take, in mm.
 fn room(book: &Book) -> [f32; 2] {

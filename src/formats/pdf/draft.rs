@@ -4,10 +4,9 @@
 //! goes on over several, each with its part of the threading and the treadling.
 
 use super::PdfError;
-use super::sheet::{Book, MARGIN, Page};
+use super::sheet::{BLACK, Book, GREY, MARGIN, Page};
 use crate::design::{
-    Design, Draft, FirstEnd, FirstPick, Lifting, Loom, Shed, Srgb, Structure, Ties, WeavePattern,
-    derive,
+    Design, Draft, FirstEnd, FirstPick, Lifting, Loom, Shed, Structure, Ties, WeavePattern, derive,
 };
 
 /// The most pages of drafts.
@@ -19,9 +18,6 @@ const CELLS: [f32; 2] = [4.0, 2.0];
 /// Heading above and numbers beside, in mm.
 const HEAD: f32 = 16.0;
 const BESIDE: f32 = 7.0;
-
-const BLACK: Srgb = Srgb(0, 0, 0);
-const GREY: Srgb = Srgb(90, 90, 90);
 
 /// Threading and lifting as they are drawn; empty for a drawdown alone.
 struct Drawn {

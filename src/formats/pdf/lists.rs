@@ -1,6 +1,6 @@
 //! What the loom is dressed with: yarns and their lengths, orders, heddles, sett.
 
-use super::sheet::{Book, MARGIN, Page};
+use super::sheet::{BLACK, Book, GREY, MARGIN, Page};
 use crate::design::checks::{Interlacing, TakeUp, heddles, take_up, yarn_needs};
 use crate::design::{Design, Srgb, WeavePattern, YarnMap, stripes};
 
@@ -13,9 +13,6 @@ const LETTER: f32 = 0.55;
 const MOST_TEXT: usize = 6000;
 /// The most yarns and shafts that are listed.
 const MOST_LISTED: usize = 400;
-
-const BLACK: Srgb = Srgb(0, 0, 0);
-const GREY: Srgb = Srgb(90, 90, 90);
 
 /// The pages of the lists.
 pub(super) fn pages(book: &mut Book, design: &Design, drawdown: &WeavePattern) {

@@ -10,6 +10,9 @@ use crate::design::Srgb;
 const POINTS: f32 = 72.0 / 25.4;
 /// White border of every page in mm.
 pub(super) const MARGIN: f32 = 15.0;
+/// Ink of what is read first, and of the rest.
+pub(super) const BLACK: Srgb = Srgb(0, 0, 0);
+pub(super) const GREY: Srgb = Srgb(90, 90, 90);
 /// Width of a digit of Helvetica over its size.
 const DIGIT: f32 = 0.556;
 /// Deflate's usual effort.
