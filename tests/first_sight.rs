@@ -5,7 +5,9 @@ mod picture_likeness;
 
 use std::sync::Arc;
 
-use pickglass::design::{Design, WeavePattern};
+use pickglass::design::{
+    Design, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
+};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::presets;
 use pickglass::job::Job;
@@ -106,6 +108,99 @@ fn first_sight_resembles_the_converged_picture() {
         ]);
         let other = looked(&request, &picture(&first(&design), &moved, "control"));
         assert!(ssim(&other, &traced) < likeness, "{name}: the control");
+    }
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+/// A twill of 900 × 1500 crossings, and what it is after an edit of each kind.
+fn edits() -> (Arc<Design>, Vec<(&'static str, Arc<Design>)>) {
+    let yarns = vec![
+        Yarn::new("navy", Family::Cotton, Srgb(38, 52, 94)),
+        Yarn::new("cream", Family::Cotton, Srgb(236, 226, 203)),
+    ];
+    let maps = YarnMaps::plain(YarnId(0), YarnId(1));
+    let sett = usual_sett(&yarns, &maps);
+    let twill = |end: u32, pick: u32| (end + 8 - pick % 8) % 4 < 2;
+    let of = |yarns: &[Yarn], up: &dyn Fn(u32, u32) -> bool| {
+        let pattern = Structure::Pattern(WeavePattern::from_fn(900, 1500, up));
+        let design = Design::new("twill", pattern, yarns.to_vec(), maps.clone(), sett.clone());
+        Arc::new(design.unwrap())
+    };
+    let mut red = yarns.clone();
+    red[0].colour = Srgb(150, 30, 40);
+    // In view lie the crossings round the middle, 450 and 750.
+    let edits = vec![
+        (
+            "a painted cell",
+            of(&yarns, &|end, pick| {
+                twill(end, pick) != ((end, pick) == (452, 751))
+            }),
+        ),
+        (
+            "a tie-up click",
+            of(&yarns, &|end, pick| {
+                twill(end, pick) != (end % 8 == 3 && pick % 8 == 1)
+            }),
+        ),
+        (
+            "a fill",
+            of(&yarns, &|end, pick| match end > 450 && pick > 745 {
+                true => (end + 3 * pick) % 8 == 0,
+                false => twill(end, pick),
+            }),
+        ),
+        ("a yarn's colour", of(&red, &twill)),
+    ];
+    (of(&yarns, &twill), edits)
+}
+
+#[test]
+fn an_edit_looks_at_once_much_as_it_will() {
+    let mut faults = Vec::new();
+    let (before, edits) = edits();
+    let mut request = request(View::Face, "day");
+    request.width_mm = Some(30.0 * before.sett().ends.mean_pitch_mm());
+    let traced = |design: &Arc<Design>, name: &str| {
+        let cloth = prepare(design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+        picture(&cloth, &request, name)
+    };
+    let tables = Arc::new(SightTables::default());
+    let sighted = |design: &Arc<Design>| {
+        let sight = FirstSight::new(
+            Arc::clone(design),
+            Arc::new(design.weave()),
+            Arc::clone(&tables),
+        );
+        sight.look(&request, &Job::new()).unwrap()
+    };
+    let (known, seen) = (traced(&before, "twill"), sighted(&before));
+    for (name, after) in edits {
+        let (wanted, sight) = (traced(&after, name), sighted(&after));
+        let carried = seen.carried_to(&sight, &known).unwrap();
+        let [wanted, shown, alone, old] =
+            [&wanted, &carried.rgba, &sight.rgba, &known].map(|rgba| looked(&request, rgba));
+        let (likeness, colour) = (ssim(&shown, &wanted), mean_delta_e(&shown, &wanted));
+        println!(
+            "{name}: {:.1} % of the pixels change; SSIM {likeness:.3}, ΔE {colour:.2} \
+             (first sight alone {:.3}, {:.2}; the old picture {:.3}, {:.2})",
+            100.0 * carried.changed,
+            ssim(&alone, &wanted),
+            mean_delta_e(&alone, &wanted),
+            ssim(&old, &wanted),
+            mean_delta_e(&old, &wanted),
+        );
+        if likeness < 0.8 || colour > 5.0 {
+            faults.push(format!("{name}: {likeness:.3} {colour:.2}"));
+        }
+        // Controls: neither first sight alone nor the old picture is as near.
+        assert!(
+            colour < mean_delta_e(&alone, &wanted),
+            "{name}: first sight"
+        );
+        assert!(
+            colour < mean_delta_e(&old, &wanted),
+            "{name}: the old picture"
+        );
     }
     assert!(faults.is_empty(), "{faults:?}");
 }

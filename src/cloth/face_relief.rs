@@ -9,9 +9,9 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::design::WeavePattern;
-use crate::exemplar::Pair;
-use crate::synthesis::Catalogue;
-use crate::yarn::{Direction, WeaveGeometry, hash};
+use crate::exemplar::{Pair, layout};
+use crate::synthesis::{Catalogue, Side, key_of};
+use crate::yarn::{Direction, WeaveGeometry};
 
 /// Texels along a crossing's side at the finest level.
 pub const TEXELS: usize = 12;
@@ -24,17 +24,6 @@ const REACH: i64 = TEXELS as i64;
 /// How much darker a yarn is at the border of a crossing than in its middle, where light
 /// also comes in from the sides.
 const ROUNDED: f32 = 0.3;
-/// Seed of the layout; each weave has its own.
-const SEED: u64 = 2012;
-
-/// Number of a crossing's neighbourhood: bit 0 = warp up here, then left, right, below and
-/// above.
-pub fn neighbourhood(here: bool, left: bool, right: bool, below: bool, above: bool) -> u8 {
-    [here, left, right, below, above]
-        .into_iter()
-        .enumerate()
-        .fold(0, |key, (bit, up)| key | u8::from(up) << bit)
-}
 
 /// A covered place of some crossing.
 pub(super) struct Spot {
@@ -65,8 +54,7 @@ impl FaceRelief {
             .into_par_iter()
             .flat_map_iter(|exemplar| {
                 let weave = &catalogue.weaves()[exemplar];
-                let seed = hash(SEED, exemplar as u64);
-                let geometry = WeaveGeometry::new(weave, &pair.warp, &pair.weft, pitch, seed);
+                let geometry = layout(catalogue, pair, pitch, exemplar);
                 Heights::of(&geometry, back).spots(weave)
             })
             .collect();
@@ -88,13 +76,11 @@ impl FaceRelief {
 
 fn key_at(weave: &WeavePattern, end: i64, pick: i64) -> u8 {
     let up = |end, pick| weave.get_wrapped(end, pick);
-    neighbourhood(
-        up(end, pick),
-        up(end - 1, pick),
-        up(end + 1, pick),
-        up(end, pick - 1),
-        up(end, pick + 1),
-    )
+    let beside = Side::ALL.map(|side| {
+        let (ends, picks) = side.offset();
+        up(end + ends, pick + picks)
+    });
+    key_of(up(end, pick), beside)
 }
 
 /// The yarns' surface over one repeat of a weave, upwards to the eye.

@@ -3,9 +3,9 @@
 //! Comes in: a [`FaceRelief`] and a light. Goes out: for each of the 32 neighbourhoods of a
 //! crossing a small picture of the share that warp and weft take of it and how brightly
 //! they are lit. Light is direct light on the relief, hidden where a neighbour stands
-//! higher, and softened as fibres scatter it on. Brightness is relative to the mean of the
-//! same neighbourhood under the default light, whose colour
-//! [`super::colour::colours_on_top`] knows.
+//! higher, and softened as fibres scatter it on. Brightness and tint are relative to the
+//! mean of the same neighbourhood under the default light, in which
+//! [`super::colour::colours_on_top`] knows what yarns show.
 
 use glam::Vec3;
 
@@ -45,6 +45,8 @@ impl Texel {
 pub struct FaceTable {
     /// By level, neighbourhood and texel, pick by pick from the lower left.
     levels: [Vec<Texel>; 4],
+    /// What the light's colour makes of colours.
+    tint: Vec3,
 }
 
 impl FaceTable {
@@ -87,7 +89,14 @@ impl FaceTable {
         }
         Self {
             levels: [0, 1, 2, 3].map(|level| coarser(&lit, level)),
+            tint: colour_of(&lamps[0]) / colour_of(&lamps[1]),
         }
+    }
+
+    /// Linear colours under this light, over those under the default light; brightness is
+    /// the texels' matter.
+    pub fn tint(&self) -> Vec3 {
+        self.tint
     }
 
     /// The level whose texels are about as large as pixels, at this many pixels a crossing.
@@ -125,7 +134,8 @@ fn coarser(finest: &[Texel], level: usize) -> Vec<Texel> {
 struct Lamp {
     /// Unit direction, z towards the eye's side.
     towards: Vec3,
-    /// What a white diffuser that faces it would show.
+    /// What a white diffuser that faces it would show, and its luminance.
+    colour: Vec3,
     light: f32,
     /// Which of the horizon's directions it stands in, and the tangent of its height.
     sector: usize,
@@ -133,12 +143,13 @@ struct Lamp {
 }
 
 impl Lamp {
-    fn new(towards: Vec3, light: f32) -> Self {
+    fn new(towards: Vec3, colour: Vec3) -> Self {
         let turns = towards.y.atan2(towards.x) / std::f32::consts::TAU;
         let sector = (turns * AZIMUTHS as f32).round() as i64;
         Self {
             towards,
-            light,
+            colour,
+            light: luminance(colour),
             sector: sector.rem_euclid(AZIMUTHS as i64) as usize,
             above: towards.z / towards.truncate().length().max(1e-4),
         }
@@ -152,27 +163,37 @@ fn lamps(rig: &LightRig, back: bool) -> Vec<Lamp> {
     let turn = if rig.is_turned_over() { -1.0 } else { 1.0 };
     let seen = |towards: Vec3| Vec3::new(towards.x, towards.y, side * towards.z);
     let mut lamps: Vec<Lamp> = (rig.suns.iter())
-        .map(|sun| Lamp::new(seen(sun.towards), luminance(sun.irradiance) / PI))
+        .map(|sun| Lamp::new(seen(sun.towards), sun.irradiance / PI))
         .collect();
     match &rig.sky {
         Sky::Dark => {}
         Sky::Dome(dome) => lamps.extend(hemisphere().map(|towards| {
             let from = Vec3::new(turn * towards.x, towards.y, turn * side * towards.z);
-            Lamp::new(
-                towards,
-                luminance(dome.radiance(from)) * 2.0 / SKY_SAMPLES as f32,
-            )
+            Lamp::new(towards, dome.radiance(from) * 2.0 / SKY_SAMPLES as f32)
         })),
         Sky::Image(image) => lamps.extend((0..SKY_SAMPLES).filter_map(|k| {
             let sample = image.sample([place(k, 0.754_877_7), place(k, 0.569_840_3)])?;
             let from = sample.direction;
             let towards = seen(Vec3::new(turn * from.x, from.y, turn * from.z));
             let share = PI * SKY_SAMPLES as f32 * sample.density;
-            Some(Lamp::new(towards, luminance(sample.radiance) / share))
+            Some(Lamp::new(towards, sample.radiance / share))
         })),
     }
     lamps.retain(|lamp| lamp.light > 0.0 && lamp.light.is_finite());
     lamps
+}
+
+/// Colour of a white diffuser that lies flat, at a luminance of 1.
+fn colour_of(lamps: &[Lamp]) -> Vec3 {
+    let flat: Vec3 = (lamps.iter())
+        .map(|lamp| lamp.colour * lamp.towards.z.max(0.0))
+        .sum();
+    let colour = flat / luminance(flat);
+    if colour.is_finite() {
+        colour.max(Vec3::splat(1e-3))
+    } else {
+        Vec3::ONE
+    }
 }
 
 /// The fraction of k times an irrational number: evenly spread places.
@@ -206,11 +227,10 @@ fn brightness(spot: &Spot, lamps: &[Lamp]) -> f32 {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
-    use super::super::face_relief::neighbourhood;
     use super::*;
     use crate::design::Family;
     use crate::exemplar::Pair;
-    use crate::synthesis::Catalogue;
+    use crate::synthesis::{Catalogue, key_of};
     use crate::yarn::YarnRecipe;
     use glam::Vec2;
 
@@ -264,10 +284,25 @@ mod tests {
     }
 
     #[test]
+    fn a_coloured_light_tints_and_the_usual_one_does_not() {
+        assert_eq!(table("day", false).tint(), Vec3::ONE);
+        let mut rig = LightRig::preset("sun").unwrap();
+        for sun in &mut rig.suns {
+            sun.irradiance = Vec3::new(2.0, 1.0, 0.5);
+        }
+        rig.sky = Sky::Dark;
+        let tint = FaceTable::new(&relief(false), &rig).tint();
+        assert!(tint.x > tint.y && tint.y > tint.z, "{tint}");
+        rig.suns.clear();
+        assert_eq!(FaceTable::new(&relief(false), &rig).levels[3].len(), KEYS);
+        assert!(FaceTable::new(&relief(false), &rig).tint().is_finite());
+    }
+
+    #[test]
     fn a_light_from_the_left_lights_left_slopes() {
         let table = table("raking-left", false);
         // Warp up between wefts: the end is a ridge from below to above.
-        let key = neighbourhood(true, false, false, true, true);
+        let key = key_of(true, [false, false, true, true]);
         let (left, right) = (table.at(0, key, 0.2, 0.5), table.at(0, key, 0.8, 0.5));
         assert!(
             left.warp + left.weft > right.warp + right.weft,

@@ -24,7 +24,7 @@ mod window;
 
 pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
 pub use export::{ClothWindow, Part, Region, WindowError};
-pub use face_relief::{FaceRelief, TEXELS, neighbourhood};
+pub use face_relief::{FaceRelief, TEXELS};
 pub use face_table::{FaceTable, Texel};
 pub use hairs::{HairLayer, HairWalk};
 pub use walk::ClothWalk;

@@ -8,7 +8,9 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Index of a yarn in a design's yarn list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 pub struct YarnId(pub u16);
 
 /// An 8-bit sRGB colour, as the designer picked it.

@@ -111,13 +111,17 @@ fn voxels_along(pitch: f32, level: u32) -> usize {
 }
 
 impl VoxelGrid {
+    /// Spacing of ends and picks, mm.
+    pub fn pitch(&self) -> Vec2 {
+        self.voxel_mm.truncate() * Vec2::new(self.block[0] as f32, self.block[1] as f32)
+    }
+
     /// Geometric mean of a voxel's sides, µm: of this grid, and of level 0 at its spacing.
     pub fn voxel_um(&self) -> [f32; 2] {
-        let pitch = [
-            self.voxel_mm.x * self.block[0] as f32,
-            self.voxel_mm.y * self.block[1] as f32,
-        ];
-        let fine = pitch.map(|pitch| pitch / voxels_along(pitch, 0) as f32);
+        let fine = self
+            .pitch()
+            .to_array()
+            .map(|pitch| pitch / voxels_along(pitch, 0) as f32);
         [
             self.voxel_mm.element_product().cbrt(),
             (fine[0] * fine[1]).sqrt(),
@@ -136,7 +140,7 @@ impl ExemplarSet {
         pair.weft.check()?;
         let mut predicted = EdgeHeights::flat(catalogue.blocks(), grid.block[0], grid.block[1]);
         for exemplar in 0..catalogue.exemplars() {
-            let weave = layout(catalogue, pair, &grid, exemplar);
+            let weave = layout(catalogue, pair, grid.pitch(), exemplar);
             predict(&mut predicted, catalogue, exemplar, &weave, &grid);
         }
         Ok(Self {
@@ -192,19 +196,12 @@ impl ExemplarSet {
     }
 }
 
-fn layout(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usize) -> WeaveGeometry {
-    let pitch = Vec2::new(
-        grid.voxel_mm.x * grid.block[0] as f32,
-        grid.voxel_mm.y * grid.block[1] as f32,
-    );
+/// The yarns of one exemplar of a catalogue at a spacing of ends and picks, mm: as they lie
+/// in its voxels.
+pub fn layout(catalogue: &Catalogue, pair: &Pair, pitch: Vec2, exemplar: usize) -> WeaveGeometry {
     let weave = &catalogue.weaves()[exemplar];
-    WeaveGeometry::new(
-        weave,
-        &pair.warp,
-        &pair.weft,
-        pitch,
-        hash(SEED, exemplar as u64),
-    )
+    let seed = hash(SEED, exemplar as u64);
+    WeaveGeometry::new(weave, &pair.warp, &pair.weft, pitch, seed)
 }
 
 /// The voxels of one exemplar of a catalogue.
@@ -218,7 +215,7 @@ pub(super) fn build_exemplar(
     exemplar: usize,
     job: &Job,
 ) -> Result<BrickVolume, Cancelled> {
-    let weave = layout(catalogue, pair, grid, exemplar);
+    let weave = layout(catalogue, pair, grid.pitch(), exemplar);
     voxelise(
         &weave,
         &pair.warp,

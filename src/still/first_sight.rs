@@ -1,8 +1,8 @@
 //! First sight: the cloth within milliseconds, without paths or synthesis.
 //!
 //! Every crossing shows what its neighbourhood, its yarns, the light and the side looked
-//! at make of it: the places of [`FaceTable`], in the colours that
-//! [`crate::cloth::expected`] expects. A crossing smaller than a pixel is its mean. What
+//! at make of it: the places of [`FaceTable`], in the colours of
+//! [`colours_on_top`]. A crossing smaller than a pixel is its mean. What
 //! lies behind the cloth, hairs and the slant of a view are not shown; the path tracer
 //! brings them.
 
@@ -11,19 +11,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
+use super::carried::{Place, Sighted};
 use super::engine::Engine;
 use super::picture::{Pass, camera, lights};
 use super::prepare::coloured;
 use super::request::LightChoice;
 use super::{StillError, StillRequest};
 use crate::cloth::colour::colours_on_top;
-use crate::cloth::{FaceRelief, FaceTable, YarnClasses, neighbourhood};
-use crate::design::{Design, Positions, WeavePattern, YarnId, YarnMap};
+use crate::cloth::{FaceRelief, FaceTable, YarnClasses};
+use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
 use crate::job::Job;
 use crate::render::{Camera, Tone, View};
-use crate::synthesis::Catalogue;
-use crate::yarn::YarnRecipe;
+use crate::synthesis::{Catalogue, Side, key_of};
 
 /// Samples a pixel, each way, where crossings are smaller than pixels.
 const MOST_SAMPLES: usize = 4;
@@ -31,12 +31,6 @@ const MOST_SAMPLES: usize = 4;
 const MOST_TABLES: usize = 24;
 /// Pairs of yarns whose colours are worked out in advance.
 const MOST_PAIRS: usize = 1024;
-/// Share of the cloth's mean colour that the hairs of wool lay over every yarn, and what
-/// wool's hairs are, 1/mm.
-const VEIL: f32 = 0.03;
-const WOOLLY: f32 = 2.6;
-/// Threads whose yarns are asked for the cloth's mean colour.
-const MOST_ASKED: usize = 4096;
 /// Places of the curve from light to display values, and the light it reaches to.
 const CURVE: usize = 1 << 13;
 const BRIGHTEST: f32 = 2.0;
@@ -124,8 +118,6 @@ struct Sight<'d> {
     tables: Vec<Arc<FaceTable>>,
     /// By warp and weft yarn.
     colours: Vec<[Vec3; 2]>,
-    /// What hairs lay over everything.
-    veil: Vec3,
     ends: Positions,
     picks: Positions,
     level: usize,
@@ -140,6 +132,8 @@ struct Crossing {
     pick: i64,
     key: u8,
     set: u16,
+    warp: YarnId,
+    weft: YarnId,
     colours: [Vec3; 2],
 }
 
@@ -155,28 +149,11 @@ impl Engine for FirstSight {
         on_pass: &mut dyn FnMut(&Pass<'_>),
     ) -> Result<(), StillError> {
         let begun = std::time::Instant::now();
-        let design = coloured(&self.design, request)?;
-        let camera = camera(&design, request)?;
-        let sight = self.sight(&design, request, &camera)?;
-        job.check()?;
-        let (width, height) = (request.width as usize, request.height as usize);
-        let mut rgba = vec![0u8; width * height * 4];
-        let straight = request.eye.is_none() && matches!(request.view, View::Face | View::Back);
-        let columns: Vec<(i64, f32)> = if straight {
-            sight.across(&camera, width)
-        } else {
-            Vec::new()
-        };
-        rgba.par_chunks_mut(width * 4)
-            .enumerate()
-            .for_each(|(y, row)| match straight {
-                true => sight.straight_row(&camera, y, &columns, row),
-                false => sight.slanting_row(&camera, y, row),
-            });
+        let sighted = self.look(request, job)?;
         on_pass(&Pass {
             width: request.width,
             height: request.height,
-            rgba: &rgba,
+            rgba: &sighted.rgba,
             spp: 0,
             seconds: begun.elapsed().as_secs_f64(),
             error: None,
@@ -186,6 +163,39 @@ impl Engine for FirstSight {
 }
 
 impl FirstSight {
+    /// The picture, with what each pixel shows: what a later one is compared with.
+    ///
+    /// # Errors
+    /// As [`Engine::draw`].
+    pub fn look(&self, request: &StillRequest, job: &Job) -> Result<Sighted, StillError> {
+        let design = coloured(&self.design, request)?;
+        let camera = camera(&design, request)?;
+        let sight = self.sight(&design, request, &camera)?;
+        job.check()?;
+        let (width, height) = (request.width as usize, request.height as usize);
+        let mut rgba = vec![0u8; width * height * 4];
+        let mut places = vec![Place::NONE; width * height];
+        let straight = request.eye.is_none() && matches!(request.view, View::Face | View::Back);
+        let columns: Vec<(i64, f32)> = if straight {
+            sight.across(&camera, width)
+        } else {
+            Vec::new()
+        };
+        (rgba.par_chunks_mut(width * 4))
+            .zip(places.par_chunks_mut(width))
+            .enumerate()
+            .for_each(|(y, (row, places))| match straight {
+                true => sight.straight_row(&camera, y, &columns, row, places),
+                false => sight.slanting_row(&camera, y, row, places),
+            });
+        Ok(Sighted {
+            rgba,
+            places,
+            pairs: sight.classes.pairs.clone(),
+            yarns: design.yarns().to_vec(),
+        })
+    }
+
     fn sight<'d>(
         &'d self,
         design: &'d Design,
@@ -234,7 +244,6 @@ impl FirstSight {
             classes,
             tables,
             colours,
-            veil: veil(design),
             ends,
             picks,
             level: FaceTable::level(pixels),
@@ -242,28 +251,6 @@ impl FirstSight {
             curve,
         })
     }
-}
-
-/// The light that hairs scatter over everything: a share of the cloth's mean colour.
-fn veil(design: &Design) -> Vec3 {
-    let mean = |map: &YarnMap| {
-        let ids: Vec<YarnId> = match map {
-            YarnMap::Order(order) => order.iter().copied().take(MOST_ASKED).collect(),
-            YarnMap::Crossings(grid) => (0..grid.ends().min(MOST_ASKED as u32))
-                .map(|end| grid.get(end, end % grid.picks()))
-                .collect(),
-        };
-        let sum: Vec3 = (ids.iter())
-            .map(|&id| {
-                let yarn = design.yarn(id);
-                let recipe = YarnRecipe::family(yarn.family, yarn.diameter());
-                yarn.colour.to_linear() * (recipe.hairs_per_mm / WOOLLY).min(1.0)
-            })
-            .sum();
-        sum / ids.len().max(1) as f32
-    };
-    let maps = design.maps();
-    (mean(&maps.warp) + mean(&maps.weft)) * 0.5 * VEIL
 }
 
 impl Sight<'_> {
@@ -279,7 +266,14 @@ impl Sight<'_> {
             .collect()
     }
 
-    fn straight_row(&self, camera: &Camera, y: usize, columns: &[(i64, f32)], row: &mut [u8]) {
+    fn straight_row(
+        &self,
+        camera: &Camera,
+        y: usize,
+        columns: &[(i64, f32)],
+        row: &mut [u8],
+        places: &mut [Place],
+    ) {
         let mut sums = vec![(Vec3::ZERO, 0.0f32); row.len() / 4];
         for sample in 0..self.samples {
             let along = y as f32 + (sample as f32 + 0.5) / self.samples as f32;
@@ -294,6 +288,7 @@ impl Sight<'_> {
                 here = crossing;
                 if let Some(crossing) = crossing {
                     let (light, cover) = self.light(&crossing, u, v as f32);
+                    places[column / self.samples] = self.place(&crossing, u, v as f32);
                     let sum = &mut sums[column / self.samples];
                     *sum = (sum.0 + light, sum.1 + cover);
                 }
@@ -304,9 +299,9 @@ impl Sight<'_> {
         }
     }
 
-    fn slanting_row(&self, camera: &Camera, y: usize, row: &mut [u8]) {
+    fn slanting_row(&self, camera: &Camera, y: usize, row: &mut [u8], places: &mut [Place]) {
         let mut here: Option<Crossing> = None;
-        for (x, pixel) in row.chunks_exact_mut(4).enumerate() {
+        for (x, (pixel, shown)) in row.chunks_exact_mut(4).zip(places).enumerate() {
             let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5);
             let along = -ray.origin.z / ray.direction.z;
             if !(along > 0.0 && along.is_finite()) {
@@ -321,6 +316,7 @@ impl Sight<'_> {
             };
             here = crossing;
             if let Some(crossing) = crossing {
+                *shown = self.place(&crossing, u as f32, v as f32);
                 self.show(self.light(&crossing, u as f32, v as f32), 1, pixel);
             }
         }
@@ -337,12 +333,12 @@ impl Sight<'_> {
     fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
         let here = self.up(end, pick)?;
         let beside = |end, pick| self.up(end, pick).unwrap_or(here);
-        let key = neighbourhood(
+        let key = key_of(
             here,
-            beside(end - 1, pick),
-            beside(end + 1, pick),
-            beside(end, pick - 1),
-            beside(end, pick + 1),
+            Side::ALL.map(|side| {
+                let (ends, picks) = side.offset();
+                beside(end + ends, pick + picks)
+            }),
         );
         let (warp, weft) = (
             self.design.warp_yarn(end, pick),
@@ -353,6 +349,8 @@ impl Sight<'_> {
             pick,
             key,
             set: self.classes.set(warp, weft),
+            warp,
+            weft,
             colours: self.colours(warp, weft),
         })
     }
@@ -362,10 +360,25 @@ impl Sight<'_> {
         let known = self
             .colours
             .get(usize::from(warp.0) * yarns + usize::from(weft.0));
-        let colours = known
+        known
             .copied()
-            .unwrap_or_else(|| colours_on_top(self.design.yarn(warp), self.design.yarn(weft)));
-        colours.map(|colour| colour + self.veil)
+            .unwrap_or_else(|| colours_on_top(self.design.yarn(warp), self.design.yarn(weft)))
+    }
+
+    /// What a later picture is told of a place of a crossing.
+    fn place(&self, crossing: &Crossing, u: f32, v: f32) -> Place {
+        let place = Place {
+            key: crossing.key,
+            cell: Place::cell(u, v),
+            set: crossing.set,
+            warp: crossing.warp,
+            weft: crossing.weft,
+        };
+        if self.samples > 1 {
+            place.mixed()
+        } else {
+            place
+        }
     }
 
     /// Light and cover of a place of a crossing.
@@ -376,7 +389,8 @@ impl Sight<'_> {
         };
         let texel = table.at(self.level, crossing.key, u, v);
         let [warp, weft] = crossing.colours;
-        (warp * texel.warp + weft * texel.weft, texel.cover)
+        let light = warp * texel.warp + weft * texel.weft;
+        (light * table.tint(), texel.cover)
     }
 
     #[inline]

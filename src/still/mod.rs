@@ -6,6 +6,7 @@
 //! colourways of a design side by side, the cloth made once wherever their yarns allow;
 //! [`render_grid`] takes a picture of a volume that was read.
 
+mod carried;
 mod effects;
 mod engine;
 mod first_sight;
@@ -16,6 +17,7 @@ mod prepare;
 mod request;
 mod sheet;
 
+pub use carried::{Carried, Sighted};
 pub use effects::{DIALS, DialError, EFFECTS};
 pub use engine::Engine;
 pub use first_sight::{FirstSight, SightTables};

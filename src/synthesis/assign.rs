@@ -15,7 +15,7 @@ use crate::design::{Lattice, Repeat, WeavePattern};
 use crate::job::Job;
 
 use super::SynthesisError;
-use super::catalogue::{Catalogue, NO_BLOCK, Side};
+use super::catalogue::{Catalogue, NO_BLOCK, key_of};
 use super::chain::{Column, Scratch, cover};
 use super::hash::{hash, index_below};
 use super::part::Stretch;
@@ -480,13 +480,7 @@ pub(super) fn column_keys(pattern: &WeavePattern, lattice: Lattice, end: u32, ke
             bit(column, i64::from(picks))
         };
         let (left, right) = sides(pick);
-        keys.push(
-            u8::from(centre)
-                | u8::from(left) << Side::Left as u8
-                | u8::from(right) << Side::Right as u8
-                | u8::from(below) << Side::Below as u8
-                | u8::from(above) << Side::Above as u8,
-        );
+        keys.push(key_of(centre, [left, right, below, above]));
         (below, centre) = (centre, above);
     }
 }

@@ -53,6 +53,17 @@ impl Side {
     }
 }
 
+/// The key of a crossing: bit 0 = warp up here, then its neighbours in the order of
+/// [`Side::ALL`].
+pub fn key_of(here: bool, beside: [bool; 4]) -> u8 {
+    Side::ALL
+        .iter()
+        .zip(beside)
+        .fold(u8::from(here), |key, (&side, up)| {
+            key | u8::from(up) << side as u8
+        })
+}
+
 /// The crossing of an exemplar that a block shows: Zhao's triple (u, x, y).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Place {
@@ -169,11 +180,14 @@ impl Catalogue {
             let wraps = self.wraps[exemplar];
             for y in 0..picks {
                 for x in 0..ends {
-                    let mut key = u8::from(weave.get_wrapped(x, y));
+                    let beside = Side::ALL.map(|side| {
+                        let (dx, dy) = side.offset();
+                        weave.get_wrapped(x + dx, y + dy)
+                    });
+                    let key = key_of(weave.get_wrapped(x, y), beside);
                     let mut neighbours = [NO_BLOCK; 4];
                     for side in Side::ALL {
                         let (dx, dy) = side.offset();
-                        key |= u8::from(weave.get_wrapped(x + dx, y + dy)) << side as u8;
                         let inside_x = wraps[0] || (0..ends).contains(&(x + dx));
                         let inside_y = wraps[1] || (0..picks).contains(&(y + dy));
                         if inside_x && inside_y {

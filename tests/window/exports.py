@@ -22,7 +22,7 @@ def export_picture(flow):
     desk, path = flow.desk, flow.work / "cloth.png"
     desk.key("ctrl+e")
     desk.fill("Width", "number", WIDTH)
-    desk.fill("Refine for", "number", 2)
+    desk.fill("Refine for, value", "number", 2)
     desk.fill("File", "field", path)
     desk.click("Render", "button")
     desk.sees(f"Wrote {path}", seconds=240)

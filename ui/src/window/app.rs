@@ -72,9 +72,9 @@ pub struct App {
     guard: Option<Guard>,
     lose_after: Option<u32>,
     pub(super) ctx: egui::Context,
-    /// Seconds spent in each frame.
+    /// Time spent in each frame.
     #[cfg(test)]
-    pub(super) spent: Vec<f64>,
+    pub(super) spent: super::tests::Spent,
 }
 
 impl App {
@@ -115,7 +115,7 @@ impl App {
             lose_after: None,
             ctx: ctx.clone(),
             #[cfg(test)]
-            spent: Vec::new(),
+            spent: super::tests::Spent::default(),
         };
         if let Some(scale) = app.settings.mm_per_point.filter(|mm| is_scale(*mm)) {
             app.preview.mm_per_point = scale;
@@ -352,18 +352,22 @@ fn hovered_ui(ctx: &egui::Context, pane: Rect) {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         #[cfg(test)]
-        let begun = std::time::Instant::now();
+        let begun = super::tests::Clocks::now();
         self.frame(ui);
         #[cfg(test)]
-        self.spent.push(begun.elapsed().as_secs_f64());
+        self.spent.frame(begun);
     }
 
     /// Also done while the window is hidden: work is copied even then.
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        #[cfg(test)]
+        let begun = super::tests::Clocks::now();
         self.mind_device();
         if let Some(session) = &self.session {
             self.autosave.keep(ctx, session);
         }
+        #[cfg(test)]
+        self.spent.before(begun);
     }
 
     fn on_exit(&mut self) {

@@ -21,6 +21,9 @@ pub const KEY_STEP: f32 = 0.1;
 
 /// The picture on the screen.
 pub struct Shown {
+    /// The request that it answers.
+    #[cfg(test)]
+    pub generation: u64,
     pub still: StillRequest,
     pub spp: u32,
     pub seconds: f64,
@@ -67,6 +70,8 @@ impl ClothPane {
             None => ctx.load_texture("cloth", data(), TextureOptions::LINEAR),
         };
         self.shown = Some(Shown {
+            #[cfg(test)]
+            generation: picture.generation,
             still: picture.still,
             spp: picture.spp,
             seconds: picture.seconds,

@@ -525,6 +525,11 @@ fn plate(ui: &mut egui::Ui, pane: Rect, content: impl FnOnce(&mut egui::Ui)) {
 
 #[cfg(test)]
 impl Preview {
+    /// Number of the newest request.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
     /// Whether the pick glass shows a picture.
     pub fn glass_has_picture(&self) -> bool {
         self.glass.has_picture()

@@ -12,7 +12,7 @@ use super::{Window, builder, open, says, wait_for};
 use crate::opened::Opened;
 
 /// A satin of so many ends and picks in two cottons.
-fn satin(ends: u32, picks: u32) -> Opened {
+pub fn satin(ends: u32, picks: u32) -> Opened {
     let weave = WeavePattern::from_fn(ends, picks, |end, pick| (end + 3 * pick) % 8 == 0);
     let yarns = vec![
         Yarn::new("navy", Family::Cotton, Srgb(38, 52, 94)),
@@ -36,16 +36,32 @@ fn still(opened: Opened) -> Window {
     window
 }
 
-/// Tells the longest and the 99th of 100 frames; no time fails a test.
-fn tell(what: &str, spent: &mut [f64]) {
-    spent.sort_by(f64::total_cmp);
-    let at = |share: f64| spent[((spent.len() - 1) as f64 * share) as usize] * 1e3;
-    eprintln!(
-        "{what}: {} frames, p99 {:.1} ms, longest {:.1} ms",
-        spent.len(),
-        at(0.99),
-        at(1.0)
-    );
+/// A stroke of forty crossings round the middle, with the pointer; the first and the last.
+pub fn paint(window: &mut Window) -> [(i64, i64); 2] {
+    let at = |window: &Window, step: i64| {
+        let cell = (2540 + step, 3150 + step % 7);
+        (cell, window.state().draft.place_of(cell))
+    };
+    let (first, place) = at(window, 0);
+    window.event(Event::PointerMoved(place));
+    window.step();
+    let press = |window: &mut Window, pressed| {
+        window.event(Event::PointerButton {
+            pos: place,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        window.step();
+    };
+    press(window, true);
+    for step in 1..40 {
+        let (_, place) = at(window, step);
+        window.event(Event::PointerMoved(place));
+        window.step();
+    }
+    press(window, false);
+    [first, at(window, 39).0]
 }
 
 #[test]
@@ -54,45 +70,21 @@ fn the_largest_loom_file_is_painted_in() {
     for zoom in 0..2 {
         window.state_mut().draft.look_at(2560, 3150);
         window.run_steps(5);
-        window.state_mut().spent.clear();
-        let at = |window: &Window, step: i64| {
-            let cell = (2540 + step, 3150 + step % 7);
-            (cell, window.state().draft.place_of(cell))
-        };
-        let (first, place) = at(&window, 0);
-        window.event(Event::PointerMoved(place));
-        window.step();
-        let press = |window: &mut Window, pressed| {
-            window.event(Event::PointerButton {
-                pos: place,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::NONE,
-            });
-            window.step();
-        };
-        press(&mut window, true);
-        for step in 1..40 {
-            let (_, place) = at(&window, step);
-            window.event(Event::PointerMoved(place));
-            window.step();
-        }
-        press(&mut window, false);
+        window.state_mut().spent.frames.clear();
+        let [first, last] = paint(&mut window);
         let up = |window: &Window, (end, pick): (i64, i64)| {
             let document = window.state().document().expect("open");
             document.drawdown().get(end as u32, pick as u32)
         };
         if zoom > 0 {
             // Near enough for a pointer to mean one crossing.
-            assert!(up(&window, first) && up(&window, at(&window, 39).0));
+            assert!(up(&window, first) && up(&window, last));
         }
         let document = window.state().document().expect("open");
         assert!(document.is_modified());
         let cell = window.state().draft.cell();
-        tell(
-            &format!("painting on 5120 × 6300 at {cell} pixels a crossing"),
-            &mut window.state_mut().spent,
-        );
+        let what = format!("painting on 5120 × 6300 at {cell} pixels a crossing");
+        window.state_mut().spent.tell(&what);
         window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         window.run_steps(3);
         assert!(!window.state().document().expect("open").is_modified());
@@ -108,7 +100,7 @@ fn the_largest_loom_file_is_painted_in() {
 #[test]
 fn a_panel_of_sixteen_by_twenty_thousand_opens_and_pans() {
     let mut window = still(satin(16_000, 20_000));
-    window.state_mut().spent.clear();
+    window.state_mut().spent.frames.clear();
     for step in 0..40 {
         window.state_mut().draft.look_at(400 * step, 300 * step);
         window.step();
@@ -118,7 +110,7 @@ fn a_panel_of_sixteen_by_twenty_thousand_opens_and_pans() {
         window.step();
     }
     assert!(window.state().draft.cell() > 1.0);
-    tell("panning on 16000 × 20000", &mut window.state_mut().spent);
+    window.state_mut().spent.tell("panning on 16000 × 20000");
 }
 
 /// The cloth of the part in view is traced, and a view of all of it stays at first sight

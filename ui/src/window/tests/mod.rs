@@ -10,9 +10,11 @@ mod large;
 mod opening;
 mod painting;
 mod pictures;
+mod times;
 mod viewing;
 
 pub use pictures::renderer;
+pub use times::{Clocks, Spent};
 
 use std::time::{Duration, Instant};
 

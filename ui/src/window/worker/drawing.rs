@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use pickglass::design::WeavePattern;
 use pickglass::job::Job;
-use pickglass::still::{Engine, FirstSight, Pass, SightTables, StillError, StillRequest, Stop};
+use pickglass::still::{
+    Engine, FirstSight, Pass, SightTables, Sighted, StillError, StillRequest, Stop,
+};
 
 use super::{Aim, Desk, Picture, PreviewRequest};
 
@@ -31,7 +33,7 @@ pub(super) struct OnScreen {
     design: Arc<pickglass::design::Design>,
     drawdown: Arc<WeavePattern>,
     /// First sight of the same.
-    sight: Vec<u8>,
+    sight: Arc<Sighted>,
     /// The picture of the request's size, where it has been traced at that size.
     traced: Option<Vec<u8>>,
     /// Paths in the picture.
@@ -69,7 +71,7 @@ impl Drawing<'_> {
     }
 
     /// Shows the request at first sight; where only an edit is new, what it does not touch
-    /// keeps the picture that is shown.
+    /// keeps the picture that is shown, and the rest learns from it.
     pub fn first_sight(
         &self,
         tables: &Arc<SightTables>,
@@ -86,7 +88,7 @@ impl Drawing<'_> {
                 aim: request.aim,
                 design: Arc::clone(&request.design),
                 drawdown: Arc::clone(&request.drawdown),
-                sight: known.sight.clone(),
+                sight: Arc::clone(&known.sight),
                 traced: known.traced.clone(),
                 paths: known.paths.min(self.pixels() * EDITED_WORTH),
             });
@@ -97,27 +99,26 @@ impl Drawing<'_> {
             Arc::clone(&request.drawdown),
             Arc::clone(tables),
         );
-        let mut sight = Vec::new();
-        engine.draw(&request.still, self.job, &mut |pass| {
-            sight = pass.rgba.to_vec();
-        })?;
+        let sight = engine.look(&request.still, self.job)?;
         let worth = self.pixels() * SIGHT_WORTH;
         let (mut traced, mut paths) = (None, worth);
         let mut under = false;
         if let Some(known) = &known {
             if known.same_place(request) {
-                if let Some((picture, changed)) = edited(known, &sight) {
-                    if changed < MOSTLY_CHANGED {
+                if let Some(picture) = known.traced.as_ref()
+                    && let Some(carried) = known.sight.carried_to(&sight, picture)
+                {
+                    if carried.changed < MOSTLY_CHANGED {
                         paths = known.paths.min(self.pixels() * EDITED_WORTH).max(worth);
                     }
-                    traced = Some(picture);
+                    traced = Some(carried.rgba);
                 }
             } else {
                 // The eye moved: the picture that is shown lies over what is new.
                 under = known.aim == request.aim && known.same_cloth(request);
             }
         }
-        let shown = traced.as_ref().unwrap_or(&sight);
+        let shown = traced.as_ref().unwrap_or(&sight.rgba);
         self.send(
             [request.still.width, request.still.height],
             shown,
@@ -131,7 +132,7 @@ impl Drawing<'_> {
             aim: request.aim,
             design: Arc::clone(&request.design),
             drawdown: Arc::clone(&request.drawdown),
-            sight,
+            sight: Arc::new(sight),
             traced,
             paths,
         });
@@ -231,24 +232,6 @@ impl Drawing<'_> {
         drop(shared);
         (self.desk.wake)();
     }
-}
-
-/// The picture that is shown with first sight wherever that changed, and the share of
-/// pixels that did.
-fn edited(known: &OnScreen, sight: &[u8]) -> Option<(Vec<u8>, f64)> {
-    let mut picture = known.traced.clone()?;
-    if picture.len() != sight.len() || known.sight.len() != sight.len() {
-        return None;
-    }
-    let mut changed = 0usize;
-    let places = picture.chunks_exact_mut(4).zip(known.sight.chunks_exact(4));
-    for ((pixel, before), after) in places.zip(sight.chunks_exact(4)) {
-        if before != after {
-            pixel.copy_from_slice(after);
-            changed += 1;
-        }
-    }
-    Some((picture, changed as f64 / (sight.len() / 4).max(1) as f64))
 }
 
 /// A picture of a level at the size of the request, between its pixels.
