@@ -417,14 +417,24 @@ impl Design {
     /// The cloth's own repeat in ends and picks: the least common multiples of the weave's,
     /// the orders' and the spacings' periods (straight repeat).
     pub fn cloth_repeat(&self) -> (u64, u64) {
-        let along = |threads: u32, map: &YarnMap, density: &Density| {
+        let (ends, picks) = self.colour_repeat();
+        let pitches = |density: &Density| density.pitches_mm.as_ref().map_or(1, Vec::len) as u64;
+        (
+            lcm(ends, pitches(&self.sett.ends)),
+            lcm(picks, pitches(&self.sett.picks)),
+        )
+    }
+
+    /// The repeat of weave and colours together in ends and picks: the least common
+    /// multiples of the weave's and the orders' periods (straight repeat).
+    pub fn colour_repeat(&self) -> (u64, u64) {
+        let along = |threads: u32, map: &YarnMap| {
             let order = map.order().map_or(1, <[YarnId]>::len) as u64;
-            let pitches = density.pitches_mm.as_ref().map_or(1, Vec::len) as u64;
-            lcm(lcm(u64::from(threads), order), pitches)
+            lcm(u64::from(threads), order)
         };
         (
-            along(self.ends(), &self.maps.warp, &self.sett.ends),
-            along(self.picks(), &self.maps.weft, &self.sett.picks),
+            along(self.ends(), &self.maps.warp),
+            along(self.picks(), &self.maps.weft),
         )
     }
 }

@@ -12,10 +12,16 @@ use super::pattern::WeavePattern;
 use super::structure::{Region, Structure};
 use super::yarn::{Srgb, YarnId};
 
+/// A weft this near to the warp's colour under it, in every channel, is shaded: else a
+/// weave in one colour could not be seen.
+const ALIKE: u8 = 16;
+/// Beyond so many pairs of yarns, colours are compared crossing by crossing alone.
+const MOST_COMPARED: usize = 1 << 12;
+
 /// What a crossing shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Colouring {
-    /// The colour of the yarn on top.
+    /// The colour of the yarn on top; a weft over a warp of its own colour is shaded.
     Yarns,
     /// Black where the warp is up, white where the weft is.
     Structure,
@@ -88,6 +94,34 @@ pub fn region_colour(index: usize, region: &Region) -> Srgb {
     })
 }
 
+/// A colour a little darker, or lighter where it is dark already.
+fn shaded(colour: Srgb) -> Srgb {
+    let Srgb(red, green, blue) = colour;
+    let dark = red.max(green).max(blue) < 80;
+    let one = |channel: u8| match dark {
+        true => channel + (255 - channel) / 6,
+        false => channel - channel / 6,
+    };
+    Srgb(one(red), one(green), one(blue))
+}
+
+fn alike(a: Srgb, b: Srgb) -> bool {
+    let near = |a: u8, b: u8| a.abs_diff(b) <= ALIKE;
+    near(a.0, b.0) && near(a.1, b.1) && near(a.2, b.2)
+}
+
+/// Of each yarn, whether an end may have its colour; unknown ends may have any.
+fn met(design: &Design, warp: &[YarnId]) -> Vec<bool> {
+    let mut known = warp.to_vec();
+    known.sort_unstable_by_key(|yarn| yarn.0);
+    known.dedup();
+    if known.is_empty() || known.len() * design.yarns().len() > MOST_COMPARED {
+        return vec![true; design.yarns().len()];
+    }
+    let has = |colour| (known.iter()).any(|&end| alike(design.yarn(end).colour, colour));
+    design.yarns().iter().map(|yarn| has(yarn.colour)).collect()
+}
+
 /// Sum of premultiplied linear colours → sRGB of what is covered, and coverage.
 fn encoded(sum: Vec4, weight: f32) -> [u8; 4] {
     if sum.w <= 0.0 {
@@ -100,8 +134,9 @@ fn encoded(sum: Vec4, weight: f32) -> [u8; 4] {
 
 /// What crossings show, in whatever numbers the colours are worked with.
 struct Colours<Colour> {
-    /// Of each yarn; empty where the structure alone is shown.
+    /// Of each yarn, and the same shaded; empty where the structure alone is shown.
     yarns: Vec<Colour>,
+    shaded: Vec<Colour>,
     /// Of each region; empty unless they are shown.
     regions: Vec<Colour>,
     warp_up: Colour,
@@ -110,13 +145,12 @@ struct Colours<Colour> {
 
 impl<Colour: Copy> Colours<Colour> {
     fn of(design: &Design, colouring: Colouring, colour: impl Fn(Srgb) -> Colour) -> Self {
-        let yarns = match colouring {
-            Colouring::Structure => Vec::new(),
-            Colouring::Yarns | Colouring::Regions => {
-                let colours = design.yarns().iter().map(|yarn| colour(yarn.colour));
-                colours.collect()
-            }
+        let dyed = match colouring {
+            Colouring::Structure => &[],
+            Colouring::Yarns | Colouring::Regions => design.yarns(),
         };
+        let yarns = dyed.iter().map(|yarn| colour(yarn.colour)).collect();
+        let shaded = dyed.iter().map(|yarn| colour(shaded(yarn.colour)));
         let regions = match (colouring, design.structure()) {
             (Colouring::Regions, Structure::Regions(regions)) => {
                 let colours = (regions.palette().iter().enumerate())
@@ -127,6 +161,7 @@ impl<Colour: Copy> Colours<Colour> {
         };
         Self {
             yarns,
+            shaded: shaded.collect(),
             regions,
             warp_up: colour(Srgb(0, 0, 0)),
             weft_up: colour(Srgb(255, 255, 255)),
@@ -136,6 +171,11 @@ impl<Colour: Copy> Colours<Colour> {
     fn yarn(&self, yarn: YarnId) -> Colour {
         let known = self.yarns.get(usize::from(yarn.0));
         known.copied().unwrap_or(self.warp_up)
+    }
+
+    fn shaded(&self, yarn: YarnId) -> Colour {
+        let known = self.shaded.get(usize::from(yarn.0));
+        known.copied().unwrap_or(self.weft_up)
     }
 }
 
@@ -148,6 +188,10 @@ struct Painter<'d, Colour> {
     colours: Colours<Colour>,
     /// Colour of each column's end; empty where the warp changes along its ends.
     ends: Vec<Colour>,
+    /// The yarn of each column's end; empty as above, and where no yarns are shown.
+    warp: Vec<YarnId>,
+    /// Whether any end of these columns may have the colour of a yarn.
+    met: Vec<bool>,
 }
 
 impl<'d, Colour: Copy> Painter<'d, Colour> {
@@ -158,12 +202,15 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
         columns: usize,
         colours: Colours<Colour>,
     ) -> Self {
-        let ends = match &design.maps().warp {
-            _ if colours.yarns.is_empty() => vec![colours.warp_up; columns],
-            YarnMap::Order(_) => (0..columns as i64)
-                .map(|column| colours.yarn(design.warp_yarn(first + column, 0)))
+        let warp: Vec<YarnId> = match &design.maps().warp {
+            YarnMap::Order(_) if !colours.yarns.is_empty() => (0..columns as i64)
+                .map(|column| design.warp_yarn(first + column, 0))
                 .collect(),
-            YarnMap::Crossings(_) => Vec::new(),
+            _ => Vec::new(),
+        };
+        let ends = match colours.yarns.is_empty() {
+            true => vec![colours.warp_up; columns],
+            false => warp.iter().map(|&yarn| colours.yarn(yarn)).collect(),
         };
         Self {
             design,
@@ -172,6 +219,19 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
             columns,
             colours,
             ends,
+            met: met(design, &warp),
+            warp,
+        }
+    }
+
+    /// What a weft shows over the end of a column, at a crossing of the endless cloth.
+    fn weft_over(&self, weft: YarnId, column: usize, (end, pick): (i64, i64)) -> Colour {
+        let under = self.warp.get(column).copied();
+        let under = under.unwrap_or_else(|| self.design.warp_yarn(end, pick));
+        let colour = |yarn| self.design.yarn(yarn).colour;
+        match alike(colour(weft), colour(under)) {
+            true => self.colours.shaded(weft),
+            false => self.colours.yarn(weft),
         }
     }
 
@@ -179,10 +239,18 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
     fn row(&self, pick: i64, mut put: impl FnMut(usize, Colour)) {
         let (ends, picks) = (self.drawdown.ends(), self.drawdown.picks());
         let lattice = self.design.lattice();
+        let bare = self.colours.yarns.is_empty();
         let weft = match &self.design.maps().weft {
-            _ if self.colours.yarns.is_empty() => Some(self.colours.weft_up),
-            YarnMap::Order(_) => Some(self.colours.yarn(self.design.weft_yarn(self.first, pick))),
-            YarnMap::Crossings(_) => None,
+            YarnMap::Order(_) if !bare => Some(self.design.weft_yarn(self.first, pick)),
+            _ => None,
+        };
+        // One colour for the whole row, if it has one.
+        let plain = match weft {
+            _ if bare => Some(self.colours.weft_up),
+            Some(weft) if self.met.get(usize::from(weft.0)) == Some(&false) => {
+                Some(self.colours.yarn(weft))
+            }
+            _ => None,
         };
         let map = match self.design.structure() {
             Structure::Regions(regions) if !self.colours.regions.is_empty() => Some(regions.map()),
@@ -212,15 +280,18 @@ impl<'d, Colour: Copy> Painter<'d, Colour> {
                         self.colours.regions.get(usize::from(region)).copied()
                     }
                     None if up => self.ends.get(at).copied(),
-                    None => weft,
+                    None => plain,
                 };
                 let colour = known.unwrap_or_else(|| {
                     let end = end + i64::from(step);
-                    self.colours.yarn(if up {
-                        self.design.warp_yarn(end, pick)
-                    } else {
-                        self.design.weft_yarn(end, pick)
-                    })
+                    match (up, weft) {
+                        (true, _) => self.colours.yarn(self.design.warp_yarn(end, pick)),
+                        (false, Some(weft)) => self.weft_over(weft, at, (end, pick)),
+                        (false, None) => {
+                            let weft = self.design.weft_yarn(end, pick);
+                            self.weft_over(weft, at, (end, pick))
+                        }
+                    }
                 });
                 put(at, colour);
             }
@@ -303,6 +374,33 @@ mod tests {
             seen.push(pixels);
         }
         assert!(seen[0] != seen[1] && seen[0] != seen[2]);
+    }
+
+    #[test]
+    fn a_weave_in_one_colour_is_seen() {
+        for (colour, other) in [
+            (Srgb(200, 180, 140), Srgb(167, 150, 117)),
+            (Srgb(12, 0, 30), Srgb(52, 42, 67)),
+        ] {
+            let yarn = |colour| Yarn::new("y", Family::Cotton, colour);
+            // The second weft is no warp's colour, so it stays as it is.
+            let yarns = vec![yarn(colour), yarn(colour), yarn(Srgb(90, 200, 90))];
+            let maps = YarnMaps::orders(vec![YarnId(0)], vec![YarnId(1), YarnId(2)]);
+            let weave = WeavePattern::parse("#.\n.#").unwrap();
+            let sett: Sett = usual_sett(&yarns, &maps);
+            let design = Design::new("d", Structure::Pattern(weave), yarns, maps, sett).unwrap();
+            let window = SwatchWindow {
+                end: 0,
+                pick: 0,
+                size: [2, 2],
+                level: 0,
+            };
+            let bytes = |Srgb(red, green, blue)| [red, green, blue, 255];
+            let shown = swatch(&design, &design.weave(), window, Colouring::Yarns);
+            let green = bytes(Srgb(90, 200, 90));
+            let (warp, shaded) = (bytes(colour), bytes(other));
+            assert_eq!(shown, [warp, green, shaded, warp]);
+        }
     }
 
     #[test]

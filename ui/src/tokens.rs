@@ -38,6 +38,8 @@ pub const SMALLEST_PANE: f32 = 120.0;
 pub const NAVIGATOR: f32 = 128.0;
 /// Longest a scale bar may get.
 pub const SCALE_BAR: f32 = 160.0;
+/// Width of the keys in the sheet of shortcuts.
+pub const KEYS_WIDTH: f32 = 57.0 * GRID;
 /// Width of a message.
 pub const TOAST_WIDTH: f32 = 340.0;
 

@@ -24,9 +24,15 @@ impl App {
                         .map(|session| moved(&session.document, &cells, by, behind));
                     edits.into_iter().flatten().for_each(|edit| self.edit(edit));
                 }
-                Action::Restart => self.rework(|session| Some(session.document.restart())),
+                Action::Restart => {
+                    self.draft.held_back = None;
+                    self.rework(|session| Some(session.document.restart()));
+                }
                 Action::Finish => self.finish(),
-                Action::Cancel => self.rework(|session| Some(session.document.cancel())),
+                Action::Cancel => {
+                    self.draft.held_back = None;
+                    self.rework(|session| Some(session.document.cancel()));
+                }
                 Action::GoTo(entry) => self.rework(|session| session.document.go_to(entry)),
                 Action::Command(command) => self.obey(ctx, command),
                 Action::Hover(at) => self.hover = at.or(self.hover),
@@ -63,8 +69,13 @@ impl App {
         }
     }
 
-    /// Ends the gesture.
+    /// Ends the gesture, and asks about a stroke that was held back.
     pub(super) fn finish(&mut self) {
+        if let Some((cells, warp_up)) = self.draft.held_back.take() {
+            self.rework(|session| Some(session.document.cancel()));
+            self.edit(Edit::Paint { cells, warp_up });
+            return;
+        }
         if let Some(session) = &mut self.session {
             session.document.finish();
         }
@@ -104,8 +115,30 @@ impl App {
         .then(|| edit.clone());
         match session.document.apply(edit) {
             Ok(change) => self.changed(&change),
-            Err(error) => self.refused(&error, refused),
+            Err(error) => match refused {
+                Some(edit) if self.hold_back(&error, &edit) => {}
+                refused => self.refused(&error, refused),
+            },
         }
+    }
+
+    /// Keeps what a stroke painted on the drawdown of a draft until it ends, so that the
+    /// question is about the whole stroke; false where it is to be asked at once.
+    fn hold_back(&mut self, error: &EditError, edit: &Edit) -> bool {
+        let stroke = (self.session.as_ref()).is_some_and(|session| session.document.in_gesture());
+        let (EditError::ShaftDraft, true, Edit::Paint { cells, warp_up }) = (error, stroke, edit)
+        else {
+            return false;
+        };
+        match &mut self.draft.held_back {
+            Some((held, up)) if up == warp_up => held.extend(cells),
+            Some(_) => {
+                self.draft.held_back = None;
+                return false;
+            }
+            none => *none = Some((cells.clone(), *warp_up)),
+        }
+        true
     }
 
     pub(super) fn refused(&mut self, error: &EditError, edit: Option<Edit>) {

@@ -4,10 +4,11 @@
 
 use std::path::PathBuf;
 
-use egui::{Id, Modal, RichText};
+use egui::RichText;
 use pickglass::design::WeavePattern;
 use pickglass::edit::Edit;
 
+use super::dialog;
 use super::forms::{Filled, Form};
 use crate::tokens;
 
@@ -79,7 +80,7 @@ impl Asking {
         let question = self.question.as_mut()?;
         let mut answer = None;
         let mut close = false;
-        let modal = Modal::new(Id::unique("question")).show(ctx, |ui| {
+        let modal = dialog::modal(ctx, "question").show(ctx, |ui| {
             ui.set_width(tokens::TOAST_WIDTH);
             match question {
                 Question::Unsaved(next) => unsaved_ui(ui, name, next, &mut answer, &mut close),

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use egui::{DragValue, Id, Modal, RichText};
+use egui::{DragValue, RichText};
 use pickglass::design::Design;
 use pickglass::job::Job;
 
-use super::icons;
 use super::task::{Outcome, Pace, Task, left};
 use super::toasts::Grade;
+use super::{dialog, icons};
 use crate::tokens::{self, Palette};
 use crate::values;
 use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
@@ -183,7 +183,7 @@ impl Export {
             return;
         };
         let mut choice = Choice::None;
-        let modal = Modal::new(Id::unique("export")).show(ctx, |ui| choice = form_ui(ui, form));
+        let modal = dialog::modal(ctx, "export").show(ctx, |ui| choice = form_ui(ui, form));
         if modal.should_close() {
             choice = Choice::Close;
         }

@@ -6,13 +6,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use egui::{Id, Key, Modal, RichText};
+use egui::{Key, RichText};
 use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::pdf::{self, PdfOptions};
 use pickglass::formats::{self, SaveOptions, atomic, photo};
 
+use super::dialog;
+use super::image_form::{self, ImageForm};
 use super::session::{self, Session};
 use super::task::{Outcome, Task};
 use crate::opened::Opened;
@@ -94,6 +96,15 @@ impl Purpose {
         }
     }
 
+    /// The ending of a file that is written without one.
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Export => "wif",
+            Self::Print => "pdf",
+            _ => "ron",
+        }
+    }
+
     fn button(self) -> &'static str {
         match self {
             Self::Open => "Open",
@@ -170,7 +181,9 @@ pub struct Files {
     /// Paths are typed: no dialog of the system is tried.
     pub typed_only: bool,
     /// A path that was chosen for writing; the app hands over the design then.
-    chosen: Option<(Purpose, PathBuf)>,
+    chosen: Option<(Purpose, PathBuf, SaveOptions)>,
+    /// An image to be written, of which more is asked.
+    image: Option<ImageForm>,
 }
 
 impl Files {
@@ -340,17 +353,22 @@ impl Files {
 
     /// Writes the design into its file.
     pub fn save(&mut self, ctx: &egui::Context, path: PathBuf, what: Writing) {
-        self.write(ctx, Purpose::Save, path, what);
+        let options = SaveOptions::default();
+        self.write(ctx, (Purpose::Save, path, options), what);
     }
 
-    fn write(&mut self, ctx: &egui::Context, purpose: Purpose, path: PathBuf, what: Writing) {
+    fn write(
+        &mut self,
+        ctx: &egui::Context,
+        (purpose, path, options): (Purpose, PathBuf, SaveOptions),
+        what: Writing,
+    ) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
         let work = move || {
             let Writing { design, state } = what;
             let done = match purpose {
                 Purpose::Print => print(&design, &path).map(|()| Vec::new()),
-                _ => formats::save(&design, &path, &SaveOptions::default())
-                    .map_err(|error| error.to_string()),
+                _ => formats::save(&design, &path, &options).map_err(|error| error.to_string()),
             };
             match done {
                 Ok(_) if purpose == Purpose::Save => FileEvent::Saved { path, state },
@@ -370,15 +388,15 @@ impl Files {
 
     /// Whether the person is being asked for a path.
     pub fn is_asking(&self) -> bool {
-        self.dialog.is_some() || self.typed.is_some()
+        self.dialog.is_some() || self.typed.is_some() || self.image.is_some()
     }
 
     /// Writes where a path was chosen for it.
     pub fn write_chosen(&mut self, ctx: &egui::Context, what: impl FnOnce() -> Option<Writing>) {
-        if let Some((purpose, path)) = self.chosen.take()
+        if let Some(chosen) = self.chosen.take()
             && let Some(what) = what()
         {
-            self.write(ctx, purpose, path, what);
+            self.write(ctx, chosen, what);
         }
     }
 
@@ -426,21 +444,38 @@ impl Files {
     fn choose(&mut self, ctx: &egui::Context, purpose: Purpose, path: PathBuf) {
         match purpose {
             Purpose::Open => self.open(ctx, path),
-            Purpose::Save => self.chosen = Some((purpose, with_ending(path, "ron"))),
-            Purpose::Export => self.chosen = Some((purpose, with_ending(path, "wif"))),
-            Purpose::Print => self.chosen = Some((purpose, with_ending(path, "pdf"))),
+            Purpose::Save | Purpose::Export | Purpose::Print => {
+                let path = with_ending(path, purpose.ending());
+                match ImageForm::of(&path).filter(|_| purpose == Purpose::Export) {
+                    Some(form) => self.image = Some(form),
+                    None => self.chosen = Some((purpose, path, SaveOptions::default())),
+                }
+            }
             Purpose::Reference => self.open_reference(ctx, path),
         }
         ctx.request_repaint();
     }
 
-    /// Shows the field for a path, when it is asked for.
+    /// Shows what is asked about an image that is to be written.
+    fn show_image(&mut self, ctx: &egui::Context) {
+        let Some(answer) = self.image.as_mut().and_then(|form| form.show(ctx)) else {
+            return;
+        };
+        self.image = None;
+        if let image_form::Answer::Write(path, options) = answer {
+            self.chosen = Some((Purpose::Export, path, options));
+            ctx.request_repaint();
+        }
+    }
+
+    /// Shows the field for a path, when it is asked for, or what else is asked of a file.
     pub fn show(&mut self, ctx: &egui::Context) {
+        self.show_image(ctx);
         let Some(typed) = &mut self.typed else {
             return;
         };
         let (mut done, mut close) = (false, false);
-        let modal = Modal::new(Id::unique("typed path"))
+        let modal = dialog::modal(ctx, "typed path")
             .show(ctx, |ui| typed_ui(ui, typed, &mut done, &mut close));
         close |= modal.should_close();
         let path = PathBuf::from(typed.text.trim().trim_matches('"'));

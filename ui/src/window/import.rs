@@ -4,16 +4,15 @@
 use std::path::PathBuf;
 
 use egui::{
-    Button, ComboBox, DragValue, Id, Modal, RichText, ScrollArea, TextureHandle, TextureOptions,
-    vec2,
+    Button, ComboBox, DragValue, RichText, ScrollArea, TextureHandle, TextureOptions, vec2,
 };
 use pickglass::formats::LoadOptions;
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageReading, Key};
 
-use super::icons;
 use super::panes::later::Later;
 use super::thumbs;
 use super::toasts::Grade;
+use super::{dialog, icons};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 
@@ -33,7 +32,7 @@ const KINDS: [(Option<ImageAs>, &str); 6] = [
 ];
 
 /// The corner where end 1 and pick 1 meet, in words.
-const CORNERS: [(Corner, &str); 4] = [
+pub const CORNERS: [(Corner, &str); 4] = [
     (Corner::BottomLeft, "lower left"),
     (Corner::BottomRight, "lower right"),
     (Corner::TopLeft, "upper left"),
@@ -89,14 +88,16 @@ impl Import {
     pub fn show(&mut self, ctx: &egui::Context) -> Option<Answer> {
         self.read_again(ctx);
         let mut answer = None;
-        let modal = Modal::new(Id::unique("import")).show(ctx, |ui| {
+        let modal = dialog::modal(ctx, "import").show(ctx, |ui| {
             let name = self.path.file_name().unwrap_or(self.path.as_os_str());
             let title = format!("Open the image {}", name.to_string_lossy());
             ui.label(RichText::new(title).text_style(egui::TextStyle::Heading));
             ui.add_space(tokens::GAP);
-            let room = ctx.content_rect().height() - 40.0 * tokens::GRID;
+            let room = ctx.content_rect().height() - 44.0 * tokens::GRID;
+            let room = room.max(tokens::LIST_HEIGHT);
             ScrollArea::vertical()
-                .max_height(room.max(tokens::LIST_HEIGHT))
+                .min_scrolled_height(room)
+                .max_height(room)
                 .show(ui, |ui| {
                     ui.horizontal_top(|ui| {
                         ui.vertical(|ui| {
@@ -271,7 +272,7 @@ impl Import {
     }
 }
 
-fn group(ui: &mut egui::Ui, title: &str) {
+pub fn group(ui: &mut egui::Ui, title: &str) {
     ui.add_space(tokens::GRID);
     ui.label(RichText::new(title).strong());
 }

@@ -2,11 +2,30 @@
 
 use std::sync::Arc;
 
-use pickglass::design::{Design, Positions, WeavePattern};
+use pickglass::design::{Design, Positions, Repeat, WeavePattern};
 use pickglass::edit::Document;
 
 /// A whole design larger than this is shown by its weave's repeat alone, threads.
 const LARGEST_WHOLE: u32 = 192;
+
+/// Ends and picks that show the whole design, colours included: the cloth's own repeat
+/// where that is small enough to look at, else the weave's.
+pub fn whole(design: &Design) -> (u32, u32) {
+    let lattice = design.lattice();
+    // Shifted repeats of the weave are no repeats of the colours.
+    let straight = ![lattice.across, lattice.along]
+        .iter()
+        .any(|repeat| matches!(repeat, Repeat::Dropped(_)));
+    let (all_ends, all_picks) = design.cloth_repeat();
+    let bounded = |all: u64, own: u32, repeat: Repeat| match u32::try_from(all) {
+        Ok(all) if all <= own.max(LARGEST_WHOLE) && straight && repeat == Repeat::Straight => all,
+        _ => own,
+    };
+    (
+        bounded(all_ends, design.ends(), lattice.across),
+        bounded(all_picks, design.picks(), lattice.along),
+    )
+}
 
 /// A design with its drawdown and the places of its threads, worked out once.
 #[derive(Clone)]
@@ -41,21 +60,9 @@ impl Laid {
         }
     }
 
-    /// Ends and picks that show the whole design, colours included: the cloth's own
-    /// repeat where that is small enough to look at, else the weave's.
-    pub fn whole(&self) -> (u32, u32) {
-        let (ends, picks) = (self.design.ends(), self.design.picks());
-        let (all_ends, all_picks) = self.design.cloth_repeat();
-        let bounded = |all: u64, own: u32| match u32::try_from(all) {
-            Ok(all) if all <= own.max(LARGEST_WHOLE) => all,
-            _ => own,
-        };
-        (bounded(all_ends, ends), bounded(all_picks, picks))
-    }
-
-    /// Size of [`Self::whole`], mm.
+    /// Size of the [`whole`] design, mm.
     pub fn whole_mm(&self) -> [f32; 2] {
-        let (ends, picks) = self.whole();
+        let (ends, picks) = whole(&self.design);
         [
             self.ends.start(i64::from(ends)) as f32,
             self.picks.start(i64::from(picks)) as f32,

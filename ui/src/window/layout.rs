@@ -7,8 +7,8 @@ use egui::{Id, Ui, WidgetText};
 use egui_tiles::{Behavior, Container, Linear, LinearDir, Tile, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
 
-use super::focus;
 use super::panes::Pane;
+use super::{dividers, focus};
 use crate::tokens;
 
 /// Raised whenever the panes change so that an older layout would mislead.
@@ -71,6 +71,7 @@ impl Layout {
     /// Lays the panes out and shows each by `show`.
     pub fn show(&mut self, ui: &mut Ui, show: &mut dyn FnMut(&mut Ui, Pane)) {
         self.tree.ui(&mut Shown { show }, ui);
+        dividers::show(ui, &mut self.tree);
     }
 }
 
@@ -165,6 +166,11 @@ impl Behavior<Pane> for Shown<'_> {
 
     fn gap_width(&self, _style: &egui::Style) -> f32 {
         tokens::GRID
+    }
+
+    /// By dividers of our own, which have names and hear keys.
+    fn is_container_resizable(&self, _tiles: &Tiles<Pane>, _tile: TileId) -> bool {
+        false
     }
 
     fn min_size(&self) -> f32 {

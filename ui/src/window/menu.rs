@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use egui::containers::menu::MenuConfig;
-use egui::{Button, Grid, Id, Key, KeyboardShortcut, MenuBar, Modal, Modifiers, RichText};
+use egui::{Button, Grid, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
 use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
 
 use super::cloth::sheet::Kind as SheetKind;
+use super::dialog;
 use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
 use crate::tokens::{self, Palette};
 
@@ -339,12 +340,13 @@ fn clipboard(ctx: &egui::Context) -> Option<Command> {
 /// Shows the table of shortcuts; false when it was closed.
 pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
     let mut open = true;
-    let room = ctx.content_rect().height() - 12.0 * tokens::PAD;
-    let modal = Modal::new(Id::unique("shortcuts")).show(ctx, |ui| {
+    let room = (ctx.content_rect().height() - 14.0 * tokens::PAD).max(tokens::LIST_HEIGHT);
+    let modal = dialog::modal(ctx, "shortcuts").show(ctx, |ui| {
         ui.label(RichText::new("Keyboard shortcuts").text_style(tokens::title()));
         ui.add_space(tokens::GAP);
         egui::ScrollArea::vertical()
-            .max_height(room.max(tokens::LIST_HEIGHT))
+            .min_scrolled_height(room)
+            .max_height(room)
             .show(ui, |ui| {
                 for menu in Menu::ALL {
                     sheet_ui(ui, menu);
@@ -360,60 +362,61 @@ pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
 }
 
 fn sheet_ui(ui: &mut egui::Ui, menu: Menu) {
-    ui.add_space(tokens::GRID);
-    ui.label(RichText::new(menu.title()).strong());
-    Grid::new(("shortcut table", menu.title()))
+    sheet(ui, menu.title(), |ui| {
+        let rows = TABLE.iter().filter(|row| row.menu == menu);
+        for row in rows.filter(|row| !row.shortcuts.is_empty()) {
+            let keys: Vec<_> = (row.shortcuts.iter())
+                .map(|shortcut| ui.ctx().format_shortcut(shortcut))
+                .collect();
+            ui.label(RichText::new(keys.join("  ")).monospace());
+            ui.label(format!("{}: {}", row.label.trim_end_matches('…'), row.tip));
+            ui.end_row();
+        }
+    });
+}
+
+/// A part of the sheet: all parts have their columns at the same places.
+fn sheet(ui: &mut egui::Ui, title: &str, rows: impl FnOnce(&mut egui::Ui)) {
+    ui.add_space(tokens::GAP);
+    ui.label(RichText::new(title).text_style(egui::TextStyle::Heading));
+    Grid::new(("shortcut table", title))
         .num_columns(2)
+        .min_col_width(tokens::KEYS_WIDTH)
         .spacing([tokens::PAD * 2.0, tokens::GRID])
-        .show(ui, |ui| {
-            let rows = TABLE.iter().filter(|row| row.menu == menu);
-            for row in rows.filter(|row| !row.shortcuts.is_empty()) {
-                let keys: Vec<_> = (row.shortcuts.iter())
-                    .map(|shortcut| ui.ctx().format_shortcut(shortcut))
-                    .collect();
-                ui.label(RichText::new(keys.join("  ")).monospace());
-                ui.label(format!("{}: {}", row.label.trim_end_matches('…'), row.tip));
-                ui.end_row();
-            }
-        });
+        .show(ui, rows);
 }
 
 /// What the pointer does, which no table of keys can say.
 fn gestures_ui(ui: &mut egui::Ui) {
-    ui.add_space(tokens::GRID);
-    ui.label(RichText::new("Pointer").strong());
-    Grid::new("gestures")
-        .num_columns(2)
-        .spacing([tokens::PAD * 2.0, tokens::GRID])
-        .show(ui, |ui| {
-            for (gesture, tip) in [
-                (
-                    "Left button",
-                    "Draft: warp up, or the first paint. Cloth: move it",
-                ),
-                ("Right button", "Draft: weft up, or the second paint"),
-                ("Space or middle", "Move what is seen"),
-                ("Wheel", "Zoom at the pointer"),
-                ("Hold a tool's key", "That tool until the key is let go"),
-                (
-                    "Arrow keys",
-                    "Draft: move the cell cursor, with Ctrl by 8. Cloth: move it",
-                ),
-                ("Shift+arrows", "Draft: make a range from the cursor on"),
-                (
-                    "Space, Enter",
-                    "Draft: exchange warp and weft at the cursor, or paint the range; with \
+    sheet(ui, "Pointer", |ui| {
+        for (gesture, tip) in [
+            (
+                "Left button",
+                "Draft: warp up, or the first paint. Cloth: move it",
+            ),
+            ("Right button", "Draft: weft up, or the second paint"),
+            ("Space or middle", "Move what is seen"),
+            ("Wheel", "Zoom at the pointer"),
+            ("Hold a tool's key", "That tool until the key is let go"),
+            (
+                "Arrow keys",
+                "Draft: move the cell cursor, with Ctrl by 8. Cloth: move it",
+            ),
+            ("Shift+arrows", "Draft: make a range from the cursor on"),
+            (
+                "Space, Enter",
+                "Draft: exchange warp and weft at the cursor, or paint the range; with \
                      Shift the other paint",
-                ),
-                ("Menu, Shift+F10", "Draft: its menu"),
-                ("Tab", "From one field or button to the next"),
-                ("Esc", "Give up the gesture, or forget the selection"),
-            ] {
-                ui.label(RichText::new(gesture).monospace());
-                ui.label(tip);
-                ui.end_row();
-            }
-        });
+            ),
+            ("Menu, Shift+F10", "Draft: its menu"),
+            ("Tab", "From one field or button to the next"),
+            ("Esc", "Give up the gesture, or forget the selection"),
+        ] {
+            ui.label(RichText::new(gesture).monospace());
+            ui.label(tip);
+            ui.end_row();
+        }
+    });
 }
 
 #[cfg(test)]

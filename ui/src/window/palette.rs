@@ -1,7 +1,8 @@
 //! The palette: type a few letters of what you want to do.
 
-use egui::{Id, Key, Modal, RichText, ScrollArea};
+use egui::{Key, RichText, ScrollArea};
 
+use super::dialog;
 use super::menu::Situation;
 use crate::command_table::{Command, Row, TABLE, match_rank};
 use crate::tokens::{self, Palette as Colours};
@@ -38,7 +39,7 @@ impl CommandPalette {
             )
         });
         let mut command = None;
-        let modal = Modal::new(Id::unique("palette")).show(ctx, |ui| {
+        let modal = dialog::modal(ctx, "palette").show(ctx, |ui| {
             ui.set_width(1.5 * tokens::TOAST_WIDTH);
             let field = ui.add(
                 egui::TextEdit::singleline(&mut self.typed)

@@ -13,8 +13,10 @@ use super::thumbs::{Source, Thumb, Thumbs};
 use crate::command_table::{Command, row_of};
 use crate::tokens::{self, Palette};
 
-/// Side of a thumbnail, points.
-const SIDE: f32 = 148.0;
+/// Thumbnails beside each other in a wide window.
+const COLUMNS: f32 = 6.0;
+/// Side of a thumbnail, at least and at most, points.
+const SIDE: [f32; 2] = [148.0, 224.0];
 /// Side of the small picture beside a file, points.
 const SMALL: f32 = 10.0 * tokens::GRID;
 /// Recent files that are shown.
@@ -49,14 +51,17 @@ impl StartPage {
             .auto_shrink([false, false])
             .show(ui, |ui| {
                 ui.add_space(2.0 * tokens::PAD);
-                egui::Frame::new()
-                    .inner_margin(egui::Margin::symmetric(2 * tokens::PAD as i8, 0))
-                    .show(ui, |ui| {
-                        choice = begin_ui(ui);
-                        choice = self.recover_ui(ui, found).or(choice.take());
-                        choice = self.recent_ui(ui, recent).or(choice.take());
-                        choice = self.presets_ui(ui).or(choice.take());
-                    });
+                // In a wide window the page is a column in the middle.
+                let widest = COLUMNS * (SIDE[1] + tokens::PAD) - tokens::PAD;
+                let beside = (ui.available_width() - widest) / 2.0;
+                let beside = beside.floor().max(2.0 * tokens::PAD);
+                let column = ui.available_rect_before_wrap().shrink2(vec2(beside, 0.0));
+                ui.scope_builder(egui::UiBuilder::new().max_rect(column), |ui| {
+                    choice = begin_ui(ui);
+                    choice = self.recover_ui(ui, found).or(choice.take());
+                    choice = self.recent_ui(ui, recent).or(choice.take());
+                    choice = self.presets_ui(ui).or(choice.take());
+                });
             });
         choice
     }
@@ -84,11 +89,13 @@ impl StartPage {
         });
         ui.add_space(tokens::GRID);
         let mut choice = None;
+        let fits = (ui.available_width() + tokens::PAD) / COLUMNS - tokens::PAD;
+        let side = fits.floor().clamp(SIDE[0], SIDE[1]);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(tokens::PAD, tokens::PAD);
             for name in presets::names() {
                 let thumb = self.thumbs.get(&Source::Preset(name));
-                if thumbnail_ui(ui, name, thumb) {
+                if thumbnail_ui(ui, name, thumb, side) {
                     choice = Some(Choice::Preset(name));
                 }
             }
@@ -202,9 +209,9 @@ fn begin_ui(ui: &mut egui::Ui) -> Option<Choice> {
 }
 
 /// A preset's picture and what is written below it.
-fn thumbnail_ui(ui: &mut egui::Ui, name: &str, thumb: Option<&Thumb>) -> bool {
+fn thumbnail_ui(ui: &mut egui::Ui, name: &str, thumb: Option<&Thumb>, side: f32) -> bool {
     let palette = Palette::current(ui);
-    let size = vec2(SIDE, SIDE + 10.0 * tokens::GRID);
+    let size = vec2(side, side + 10.0 * tokens::GRID);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let title = thumb.map_or(name, |thumb| thumb.title.as_str());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, title));
@@ -212,7 +219,7 @@ fn thumbnail_ui(ui: &mut egui::Ui, name: &str, thumb: Option<&Thumb>) -> bool {
     let lit = response.hovered() || response.has_focus();
     let fill = if lit { palette.lit } else { palette.raised };
     painter.rect_filled(rect, tokens::RADIUS, fill);
-    let picture = Rect::from_min_size(rect.min, vec2(SIDE, SIDE));
+    let picture = Rect::from_min_size(rect.min, vec2(side, side));
     if let Some(thumb) = thumb {
         let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
         let place = picture.shrink(tokens::GRID);

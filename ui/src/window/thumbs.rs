@@ -21,6 +21,8 @@ const PIXELS: u32 = 296;
 const LARGEST_CELL: usize = 6;
 /// Larger files are not opened for a picture, bytes.
 const LARGEST_FILE: u64 = 32 << 20;
+/// A picture whose pixels lie no further apart is of one colour.
+const PLAIN: u8 = 6;
 /// Repeats of up to so many threads are shown close, larger ones whole.
 const CLOSE: u32 = 72;
 
@@ -224,6 +226,8 @@ fn woven(
     if let Err(error) = done {
         log::warn!("{title}: its thumbnail stays a drawdown: {error}");
     }
+    // Cloth of one colour shows no weave from afar: its drawdown says more.
+    let image = image.filter(|image| spread(image) >= PLAIN);
     Made {
         source,
         title,
@@ -231,6 +235,15 @@ fn woven(
         image,
         woven: true,
     }
+}
+
+/// How far apart the lightness of a picture's pixels lies, but for the outermost of them.
+fn spread(image: &ColorImage) -> u8 {
+    let mut greens: Vec<u8> = image.pixels.iter().map(|pixel| pixel.g()).collect();
+    greens.sort_unstable();
+    let few = greens.len() / 20;
+    let at = |place: usize| greens.get(place).copied().unwrap_or_default();
+    at(greens.len().saturating_sub(few + 1)).saturating_sub(at(few))
 }
 
 /// As much of the drawdown as fits, in cells of whole pixels; large designs from afar.
@@ -281,6 +294,20 @@ mod tests {
         assert_eq!(oxford.title, "Oxford");
         assert!(thumbs.get(&absent).is_none());
         assert!(thumbs.get(&Source::Preset("damask")).is_none());
+    }
+
+    #[test]
+    fn a_weave_in_one_colour_stays_a_drawdown_in_which_it_is_seen() {
+        let (known, made) = drawn(Source::Preset("damask"));
+        assert!(spread(&made.image.expect("drawn")) > PLAIN);
+        let (source, design, drawdown) = known.expect("a design");
+        assert!(
+            woven(source, design, drawdown, &Arc::default())
+                .image
+                .is_none()
+        );
+        let plain = ColorImage::filled([8, 8], egui::Color32::GRAY);
+        assert_eq!(spread(&plain), 0);
     }
 
     #[test]

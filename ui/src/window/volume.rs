@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use egui::{DragValue, Id, Modal, RichText};
+use egui::{DragValue, RichText};
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::design::Design;
 use pickglass::exemplar::ExemplarStore;
@@ -13,9 +13,9 @@ use pickglass::job::Job;
 use pickglass::still::{self, PreparedCloth, StillRequest};
 use pickglass::volume::source::VoxelSource;
 
-use super::icons;
 use super::task::{Outcome, Pace, Task};
 use super::toasts::Grade;
+use super::{dialog, icons};
 use crate::tokens::{self, Palette};
 
 /// Crossings along the side of the window that is proposed where nothing is selected.
@@ -145,7 +145,7 @@ impl VolumeExport {
             return;
         };
         let mut choice = None;
-        let modal = Modal::new(Id::unique("volume")).show(ctx, |ui| choice = form.ui(ui));
+        let modal = dialog::modal(ctx, "volume").show(ctx, |ui| choice = form.ui(ui));
         if modal.should_close() {
             choice = Some(Choice::Close);
         }

@@ -184,20 +184,23 @@ pub fn edit(design: &Design, band: Band, cells: &[Cell], set: bool, more: bool) 
     })
 }
 
-/// The edit that gives the threads of a stroke on a colour bar a yarn.
+/// The edit that gives the threads of a stroke on a colour bar a yarn. Colours may repeat
+/// later than the weave, so threads are counted over both.
 pub fn bar_edit(design: &Design, band: Band, cells: &[Cell], yarn: YarnId) -> Option<Edit> {
+    let (ends, picks) = design.colour_repeat();
     let (direction, count) = match band {
-        Band::WarpBar => (Direction::Warp, design.ends()),
-        Band::WeftBar => (Direction::Weft, design.picks()),
+        Band::WarpBar => (Direction::Warp, ends),
+        Band::WeftBar => (Direction::Weft, picks),
         _ => return None,
     };
+    let count = i64::from(u32::try_from(count).unwrap_or(u32::MAX));
     let thread = |&(end, pick): &Cell| {
         let at = if direction == Direction::Warp {
             end
         } else {
             pick
         };
-        at.rem_euclid(i64::from(count)) as u32
+        at.rem_euclid(count) as u32
     };
     Some(Edit::PaintThreads {
         direction,
@@ -245,6 +248,28 @@ mod tests {
         assert_eq!(rows, [(0, vec![3]), (1, vec![0]), (15, vec![1])]);
         let added = edit(&opened.design, Band::Threading, &[(0, 3)], true, true);
         assert!(matches!(added, Some(Edit::Threading(rows)) if rows == [(0, vec![0, 3])]));
+    }
+
+    #[test]
+    fn a_bar_gives_the_thread_that_was_clicked_its_yarn() {
+        let design = crate::opened::Opened::preset("default")
+            .expect("a preset")
+            .design;
+        // The weave closes after 4 ends, the colours later.
+        assert!(design.colour_repeat().0 > 4 && design.ends() == 4);
+        let mut document = pickglass::edit::Document::new(Design::clone(&design));
+        let edit = bar_edit(&design, Band::WarpBar, &[(10, 0), (-1, 0)], YarnId(2));
+        document.apply(edit.expect("an edit")).expect("painted");
+        let repeat = design.colour_repeat().0 as i64;
+        for end in 0..repeat {
+            let expected = match end {
+                10 => YarnId(2),
+                last if last == repeat - 1 => YarnId(2),
+                _ => design.warp_yarn(end, 0),
+            };
+            assert_eq!(document.design().warp_yarn(end, 0), expected, "{end}");
+        }
+        assert_ne!(design.warp_yarn(10, 0), YarnId(2));
     }
 
     #[test]

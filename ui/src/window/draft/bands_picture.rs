@@ -3,6 +3,7 @@
 use egui::{Color32, Mesh, Painter, Rect, Shape, Stroke, pos2, vec2};
 use pickglass::design::{Design, Lifting, YarnId, YarnMap};
 
+use super::super::laid;
 use super::areas::{Areas, Loom};
 use super::bands::{Band, draft, wrapped};
 use super::grid::CellGrid;
@@ -15,6 +16,7 @@ const MOST_MARKS: usize = 60_000;
 pub fn show(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, palette: &Palette) {
     bars(painter, grid, areas, design, palette);
     let (Some(draft), Some(loom)) = (draft(design), areas.loom) else {
+        veils(painter, grid, areas, design, palette);
         return;
     };
     for area in [areas.threading, areas.tieup, areas.treadling] {
@@ -138,18 +140,20 @@ fn lines(painter: &Painter, grid: &CellGrid, areas: &Areas, loom: &Loom, palette
     }
 }
 
-/// Fades what lies beside the first repeat.
+/// Fades what lies beside the first repeat, that of the colours beside the bars.
 fn veils(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, palette: &Palette) {
-    let home = grid.rect(0, 0, i64::from(design.ends()), i64::from(design.picks()));
+    let weave = grid.rect(0, 0, i64::from(design.ends()), i64::from(design.picks()));
+    let (ends, picks) = laid::whole(design);
+    let whole = grid.rect(0, 0, ends.into(), picks.into());
     let veil = palette.deep.gamma_multiply(0.6);
-    for area in [areas.threading, areas.warp_bar] {
+    for (area, home) in [(areas.threading, weave), (areas.warp_bar, whole)] {
         for side in [area.with_max_x(home.left()), area.with_min_x(home.right())] {
             if side.intersect(area).is_positive() {
                 painter.rect_filled(side.intersect(area), 0.0, veil);
             }
         }
     }
-    for area in [areas.treadling, areas.weft_bar] {
+    for (area, home) in [(areas.treadling, weave), (areas.weft_bar, whole)] {
         for side in [area.with_max_y(home.top()), area.with_min_y(home.bottom())] {
             if side.intersect(area).is_positive() {
                 painter.rect_filled(side.intersect(area), 0.0, veil);

@@ -3,9 +3,10 @@
 
 use egui::{Align2, Color32, FontId, Mesh, Painter, Rect, Shape, Stroke, pos2, vec2};
 use pickglass::design::{ClothBox, Design, Structure, WeavePattern, long_floats_in};
-use pickglass::edit::{Document, Rect as Crossings};
+use pickglass::edit::{Cells, Document, Rect as Crossings};
 
 use super::super::action::Mark;
+use super::super::laid;
 use super::areas::Areas;
 use super::grid::{CellGrid, ruler_step};
 use crate::command_table::DraftLayout;
@@ -15,7 +16,7 @@ use crate::tokens::{self, Palette};
 const LINES_FROM: f64 = 6.0;
 /// The edges of threads are shaded from so many pixels a cell on.
 const SHADED_FROM: f64 = 10.0;
-/// Long floats are looked for from so many pixels a cell on.
+/// Long floats, and strokes that are asked about, are drawn from so many pixels a cell on.
 const FLOATS_FROM: f64 = 2.0;
 /// Share of a cell that a shaded edge takes.
 const EDGE: f64 = 0.13;
@@ -127,16 +128,17 @@ fn line_colour(thread: i64) -> Color32 {
     }
 }
 
-/// Fades what is not the first repeat, and frames it.
+/// Fades what is not the first repeat, colours included, and frames the weave's.
 pub fn ghosts(painter: &Painter, grid: &CellGrid, design: &Design, shown: bool, palette: &Palette) {
     let home = grid.rect(0, 0, i64::from(design.ends()), i64::from(design.picks()));
+    let (ends, picks) = laid::whole(design);
     let pane = grid.pane;
     let veil = if shown {
         palette.deep.gamma_multiply(0.6)
     } else {
         palette.deep
     };
-    let inner = home.intersect(pane);
+    let inner = grid.rect(0, 0, ends.into(), picks.into()).intersect(pane);
     if inner.is_positive() {
         for rect in [
             pane.with_max_y(inner.top()),
@@ -157,8 +159,12 @@ pub fn ghosts(painter: &Painter, grid: &CellGrid, design: &Design, shown: bool, 
     } else {
         painter.rect_filled(pane, 0.0, veil);
     }
-    let stroke = Stroke::new(grid.pixel(), palette.text);
-    painter.rect_stroke(home, 0.0, stroke, egui::StrokeKind::Outside);
+    // A light and a dark line: one of them is seen on any yarn.
+    let pixel = grid.pixel();
+    for (by, colour) in [(pixel, palette.focus_edge), (0.0, palette.text)] {
+        let stroke = Stroke::new(pixel, colour);
+        painter.rect_stroke(home.expand(by), 0.0, stroke, egui::StrokeKind::Outside);
+    }
 }
 
 /// Marks the floats that pass over more threads than allowed: a bar along each, with
@@ -205,6 +211,35 @@ pub fn long_floats(
                 mesh.add_colored_rect(knob, palette.error);
             }
         }
+    }
+    painter.add(Shape::mesh(mesh));
+}
+
+/// What a stroke painted and is yet to be asked about: black where the warp is to be up,
+/// else white.
+pub fn held_back(painter: &Painter, grid: &CellGrid, design: &Design, cells: &Cells, up: bool) {
+    if grid.cell < FLOATS_FROM {
+        return;
+    }
+    let mut mesh = Mesh::default();
+    let colour = if up { Color32::BLACK } else { Color32::WHITE };
+    let (ends, picks) = cells.size();
+    let seen = visible(grid);
+    let (past_end, past_pick) = (
+        seen.end + i64::from(seen.ends),
+        seen.pick + i64::from(seen.picks),
+    );
+    let held = |end, pick| {
+        let home = design.lattice().wrap(end, pick, ends, picks);
+        home.is_some_and(|(end, pick)| cells.contains(end, pick))
+    };
+    for pick in seen.pick..past_pick {
+        runs(
+            seen.end,
+            past_end,
+            |end| held(end, pick),
+            |from, to| mesh.add_colored_rect(grid.rect(from, pick, to - from, 1), colour),
+        );
     }
     painter.add(Shape::mesh(mesh));
 }
@@ -319,7 +354,14 @@ pub fn rulers(
     let density = grid.density;
 
     let numbered = |number, count, width| is_numbered(number, count, grid.cell, width * density);
-    let clipped = painter.with_clip_rect(areas.end_ruler);
+    let label = |ruler: Rect, at, anchor: Align2, number: i64, here: bool| {
+        let colour = if here { palette.text } else { palette.quiet };
+        let text = painter.layout_no_wrap(number.to_string(), font.clone(), colour);
+        let place = anchor.anchor_size(at, text.size());
+        if let Some(place) = on_ruler(ruler, place, here) {
+            painter.galley(place.min, text, colour);
+        }
+    };
     for end in seen_ends {
         let number = end_number(end, ends, arrangement);
         let here = hover.is_some_and(|(at, _)| at == end) && grid.cell >= LINES_FROM;
@@ -330,12 +372,10 @@ pub fn rulers(
             continue;
         }
         let middle = (grid.x(end) + grid.x(end + 1)) / 2.0;
-        let colour = if here { palette.text } else { palette.quiet };
         let at = pos2(middle, areas.end_ruler.center().y);
-        clipped.text(at, Align2::CENTER_CENTER, number, font.clone(), colour);
+        label(areas.end_ruler, at, Align2::CENTER_CENTER, number, here);
     }
 
-    let clipped = painter.with_clip_rect(areas.pick_ruler);
     for pick in seen_picks {
         let number = pick.rem_euclid(picks) + 1;
         let here = hover.is_some_and(|(_, at)| at == pick) && grid.cell >= LINES_FROM;
@@ -346,10 +386,30 @@ pub fn rulers(
             continue;
         }
         let middle = (grid.y(pick) + grid.y(pick + 1)) / 2.0;
-        let colour = if here { palette.text } else { palette.quiet };
         let at = pos2(areas.pick_ruler.right() - tokens::GRID, middle);
-        clipped.text(at, Align2::RIGHT_CENTER, number, font.clone(), colour);
+        label(areas.pick_ruler, at, Align2::RIGHT_CENTER, number, here);
     }
+}
+
+/// Where a number stands on its ruler: half a number would be another one, so what does not
+/// fit is left out, but the one under the pointer is moved inside.
+fn on_ruler(ruler: Rect, place: Rect, here: bool) -> Option<Rect> {
+    let room = ruler.expand(0.5);
+    if room.contains_rect(place) {
+        return Some(place);
+    }
+    let into = |low: f32, high: f32, least: f32, most: f32| {
+        if low < least {
+            least - low
+        } else {
+            (most - high).min(0.0)
+        }
+    };
+    let by = vec2(
+        into(place.left(), place.right(), ruler.left(), ruler.right()),
+        into(place.top(), place.bottom(), ruler.top(), ruler.bottom()),
+    );
+    here.then(|| place.translate(by))
 }
 
 /// Whether a ruler shows this number of `count`: each 1, and steps as far apart as a number
@@ -382,6 +442,17 @@ mod tests {
         assert_eq!(shown(120), [1, 20, 40, 60, 80, 100]);
         assert_eq!(shown(132), [1, 20, 40, 60, 80, 100, 120]);
         assert_eq!(shown(8), [1]);
+    }
+
+    #[test]
+    fn no_number_of_a_ruler_is_cut() {
+        let ruler = Rect::from_min_size(pos2(100.0, 10.0), vec2(200.0, 18.0));
+        let number = |left: f32| Rect::from_min_size(pos2(left, 12.0), vec2(20.0, 14.0));
+        assert_eq!(on_ruler(ruler, number(140.0), false), Some(number(140.0)));
+        assert_eq!(on_ruler(ruler, number(95.0), false), None);
+        assert_eq!(on_ruler(ruler, number(290.0), false), None);
+        assert_eq!(on_ruler(ruler, number(95.0), true), Some(number(100.0)));
+        assert_eq!(on_ruler(ruler, number(290.0), true), Some(number(280.0)));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use pickglass::edit::shapes::line;
 use pickglass::edit::{Document, Surface};
 
 use super::super::action::{Action, Button};
+use super::super::laid;
 use super::DraftPane;
 use super::areas::Areas;
 use super::bands::{self, Band};
@@ -161,7 +162,8 @@ impl DraftPane {
             }
         }
         if pan != [0.0; 2] {
-            look.pan(pan, design.ends(), design.picks());
+            let (ends, picks) = laid::whole(design);
+            look.pan(pan, ends, picks);
         }
     }
 

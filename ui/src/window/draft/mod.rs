@@ -21,9 +21,10 @@ mod zone;
 
 use egui::Key;
 use pickglass::design::{Structure, YarnId};
-use pickglass::edit::{Change, Clip, Document, Rect as Crossings};
+use pickglass::edit::{Cells, Change, Clip, Document, Rect as Crossings};
 
 use super::action::{Action, Button, Mark};
+use super::laid;
 use super::settings::Settings;
 use crate::command_table::{Command, DraftLayout, Tool};
 use crate::tokens;
@@ -99,6 +100,9 @@ pub struct DraftPane {
     /// Longest floats over picks and over ends that are not marked.
     pub limits: [u32; 2],
     pub mark: Mark,
+    /// What a stroke painted on the drawdown of a draft, and whether the warp is to be up:
+    /// it is asked about when the stroke ends.
+    pub held_back: Option<(Cells, bool)>,
     pub yarns: [YarnId; 2],
     pub regions: [u16; 2],
     chosen_layer: Layer,
@@ -142,6 +146,7 @@ impl DraftPane {
             reference: None,
             limits: [USUAL_LIMIT; 2],
             mark: Mark::Nothing,
+            held_back: None,
             yarns: [YarnId(0), YarnId(1)],
             regions: [0, 1],
             chosen_layer: Layer::Weave,
@@ -180,6 +185,7 @@ impl DraftPane {
     /// Ends strokes that were refused.
     pub fn give_up(&mut self) {
         self.stroke = None;
+        self.held_back = None;
         self.band_stroke = None;
         self.drawdown.give_up();
         self.bands.iter_mut().for_each(Zone::give_up);
@@ -331,7 +337,8 @@ impl DraftPane {
             let areas = Areas::split(pane, design, arrangement, 16.0, density, [0; 2]);
             let room = areas.drawdown.size();
             let room = [room.x, room.y].map(|side| f64::from(side * density));
-            Look::fitting(design.ends(), design.picks(), room)
+            let (ends, picks) = laid::whole(design);
+            Look::fitting(ends, picks, room)
         });
         let first = self.first_shaft;
         let areas = Areas::split(pane, design, arrangement, look.cell(), density, first);

@@ -9,6 +9,7 @@ use pickglass::design::{Colouring, Design, Repeat, SwatchWindow, WeavePattern};
 use pickglass::edit::{Change, Document};
 
 use super::super::focus;
+use super::super::laid;
 use super::super::task::{Outcome, Task};
 use super::areas::Areas;
 use super::grid::CellGrid;
@@ -86,7 +87,8 @@ impl Navigator {
         self.place = None;
         self.make(ui.ctx(), document);
         let design = document.design();
-        let size = [design.ends(), design.picks()].map(|count| 3 * u64::from(count));
+        let (ends, picks) = laid::whole(design);
+        let size = [ends, picks].map(|count| 3 * u64::from(count));
         let longest = size[0].max(size[1]);
         let texture = self.made.as_ref()?.id();
         let scale = tokens::NAVIGATOR / longest as f32;
@@ -101,7 +103,7 @@ impl Navigator {
         let palette = Palette::current(ui);
         painter.rect_filled(rect.expand(2.0), 0.0, palette.raised);
         // The middle one of three by three repeats is the design itself.
-        let (ends, picks) = (f64::from(design.ends()), f64::from(design.picks()));
+        let (ends, picks) = (f64::from(ends), f64::from(picks));
         let to_screen = |end: f64, pick: f64| {
             pos2(
                 rect.left() + ((end + ends) / (3.0 * ends)) as f32 * rect.width(),
@@ -156,7 +158,8 @@ impl Navigator {
 
 /// Lower left corners of the repeats in and around the design, as its lattice puts them.
 fn repeats(design: &Design) -> Vec<(i64, i64)> {
-    let (ends, picks) = (i64::from(design.ends()), i64::from(design.picks()));
+    let (ends, picks) = laid::whole(design);
+    let (ends, picks) = (i64::from(ends), i64::from(picks));
     let lattice = design.lattice();
     let reach = |repeat: Repeat| {
         if repeat == Repeat::None {
@@ -182,13 +185,14 @@ fn repeats(design: &Design) -> Vec<(i64, i64)> {
 }
 
 fn picture(design: &Design, drawdown: &WeavePattern) -> ColorImage {
-    let longest = design.ends().max(design.picks());
+    let (ends, picks) = laid::whole(design);
+    let longest = ends.max(picks);
     let level = (0..16).find(|level| longest >> level <= SIDE).unwrap_or(16);
     let pixels = |count: u32| (count >> level).max(1) as usize;
     let window = SwatchWindow {
         end: 0,
         pick: 0,
-        size: [pixels(design.ends()), pixels(design.picks())],
+        size: [pixels(ends), pixels(picks)],
         level,
     };
     tiles::image(design, drawdown, window, Colouring::Yarns)

@@ -56,6 +56,9 @@ impl DraftPane {
         if let Some(selection) = self.selection {
             draw::selection(&painter, grid, selection);
         }
+        if let Some((cells, warp_up)) = &self.held_back {
+            draw::held_back(&painter, grid, design, cells, *warp_up);
+        }
         self.draw_stamp(&painter, grid);
         let whole = ui.painter();
         bands_picture::show(whole, grid, areas, design, &palette);

@@ -18,7 +18,10 @@ impl History {
         let quiet = Palette::current(ui).quiet;
         let (entries, present) = (document.entries(), document.position());
         let megabytes = document.history_bytes() as f64 / f64::from(1 << 20);
-        let past = format!("{} entries · {megabytes:.1} MB kept", entries.len());
+        let past = match entries.len() {
+            1 => format!("1 entry · {megabytes:.1} MB kept"),
+            count => format!("{count} entries · {megabytes:.1} MB kept"),
+        };
         ui.label(RichText::new(past).small().color(quiet));
         let moved = self.shown != Some(present);
         self.shown = Some(present);

@@ -3,6 +3,7 @@
 //! and [`Panes`] holds them. A new pane is one file, one variant and one field.
 
 mod colourways;
+mod columns;
 mod dragging;
 mod floats;
 mod history;

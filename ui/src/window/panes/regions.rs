@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use egui::RichText;
-use pickglass::design::{Design, Fill, Region, RegionYarns, Regions, Srgb, Structure, YarnId};
+use pickglass::design::{
+    Design, Fill, Region, RegionYarns, Regions, Structure, YarnId, region_colour,
+};
 use pickglass::edit::{Document, Edit};
 
+use super::columns;
 use super::later::Later;
 use super::region_details::RegionDetails;
 use super::swatches;
@@ -15,6 +18,14 @@ use crate::window::action::{Action, Button, Mark};
 
 /// Yarns that are offered for a region.
 const MOST_YARNS: usize = 64;
+
+/// Widths of what stands in columns.
+#[derive(Clone, Copy)]
+struct Columns {
+    name: f32,
+    weave: f32,
+    share: f32,
+}
 
 /// The list of regions.
 #[derive(Default)]
@@ -63,9 +74,17 @@ impl RegionList {
             let word = if weavable { "weavable" } else { "preview only" };
             ui.label(RichText::new(word).color(Palette::current(ui).quiet));
         });
-        for (number, region) in regions.palette().iter().enumerate() {
+        let palette = regions.palette();
+        let weaves: Vec<String> = palette.iter().map(weave_of).collect();
+        let columns = Columns {
+            name: columns::widest(ui, palette.iter().map(|region| region.name.as_str())),
+            weave: columns::widest(ui, weaves.iter().map(String::as_str)),
+            share: columns::widest(ui, ["100.0 %"]),
+        };
+        for (number, region) in palette.iter().enumerate() {
             let design = document.design();
-            self.region_ui(ui, design, (number as u16, count as u16), region, actions);
+            let place = (number as u16, count as u16);
+            self.region_ui(ui, design, place, columns, region, actions);
             if self.open == Some(number as u16) {
                 self.details.show(ui, regions, number as u16, actions);
             }
@@ -93,27 +112,27 @@ impl RegionList {
         ui: &mut egui::Ui,
         design: &Design,
         (number, count): (u16, u16),
+        columns: Columns,
         region: &Region,
         actions: &mut Vec<Action>,
     ) {
         let name = region.name.clone();
         let mut focused = false;
         let row = ui.horizontal(|ui| {
-            let colour = region.colour.unwrap_or(Srgb(128, 128, 128));
+            let colour = region_colour(usize::from(number), region);
             let paint = swatches::field(ui, colour, &format!("Paint region {name}"));
             focused |= paint.has_focus();
             if paint.clicked() {
                 actions.push(Action::PaintRegion(number, Button::First));
             }
-            let weave = match region.fill.notation() {
-                Some(notation) => notation.to_owned(),
-                None => {
-                    let pattern = region.fill.pattern();
-                    format!("drawn {} × {}", pattern.ends(), pattern.picks())
-                }
-            };
-            let button = ui
-                .button(&weave)
+            let open = self.open == Some(number);
+            let more = columns::cell(ui, columns.name, |ui| ui.selectable_label(open, &name));
+            let tip = "Where it lies shows in the draft; click for more";
+            if more.on_hover_text(tip).clicked() {
+                self.open = (!open).then_some(number);
+            }
+            let weave = weave_of(region);
+            let button = columns::cell(ui, columns.weave, |ui| ui.button(&weave))
                 .on_hover_text("Another weave; the outlines stay");
             let spoken = format!("Weave of {name}: {weave}");
             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
@@ -125,9 +144,8 @@ impl RegionList {
                 .areas
                 .answer()
                 .and_then(|areas| areas.get(usize::from(number)));
-            if let Some(share) = share {
-                ui.label(format!("{:.1} %", share * 100.0));
-            }
+            let share = share.map_or_else(String::new, |share| format!("{:.1} %", share * 100.0));
+            columns::cell(ui, columns.share, |ui| ui.label(share));
             let mut locked = region.locked;
             let lock = ui
                 .checkbox(&mut locked, "lock")
@@ -142,32 +160,40 @@ impl RegionList {
                     locked,
                 }));
             }
-            yarns_ui(ui, design, number, region, actions);
             for (text, to) in [
                 ("Up", number.checked_sub(1)),
                 ("Down", number.checked_add(1)),
             ] {
-                let Some(to) = to.filter(|to| *to < count) else {
-                    continue;
-                };
-                let button = ui.small_button(text);
+                let to = to.filter(|to| *to < count);
+                let button = ui.add_enabled(to.is_some(), egui::Button::new(text));
+                let button = button.on_hover_text("Move it in the list; the cloth stays");
                 let spoken = format!("{text}: {name}");
-                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
-                if button.clicked() {
+                button.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Button, to.is_some(), &spoken)
+                });
+                if button.clicked()
+                    && let Some(to) = to
+                {
                     let mut order: Vec<u16> = (0..count).collect();
                     order.swap(usize::from(number), usize::from(to));
                     actions.push(Action::edit(Edit::OrderRegions(order)));
                 }
             }
-            let open = self.open == Some(number);
-            let more = ui.selectable_label(open, &name);
-            let tip = "Where it lies shows in the draft; click for more";
-            if more.on_hover_text(tip).clicked() {
-                self.open = (!open).then_some(number);
-            }
+            yarns_ui(ui, design, number, region, actions);
         });
         if focused || ui.rect_contains_pointer(row.response.rect) {
             actions.push(Action::Mark(Mark::Region(number)));
+        }
+    }
+}
+
+/// What a region's weave is called.
+fn weave_of(region: &Region) -> String {
+    match region.fill.notation() {
+        Some(notation) => notation.to_owned(),
+        None => {
+            let pattern = region.fill.pattern();
+            format!("drawn {} × {}", pattern.ends(), pattern.picks())
         }
     }
 }

@@ -82,24 +82,26 @@ impl SettPane {
         let present = [sett.ends.per_cm, sett.picks.per_cm];
         let mut typed = self.typed.unwrap_or(present);
         let (scale, ends_unit, picks_unit) = self.unit();
-        for (which, (name, unit)) in [("Ends", ends_unit), ("Picks", picks_unit)]
-            .into_iter()
-            .enumerate()
-        {
-            ui.horizontal(|ui| {
-                let label = ui.label(name);
-                let mut number = typed[which] * scale;
-                let field = DragValue::new(&mut number)
-                    .speed(0.05)
-                    .range(0.5..=400.0)
-                    .max_decimals(2)
-                    .suffix(format!(" {unit}"));
-                if ui.add(field).labelled_by(label.id).changed() {
-                    typed[which] = number / scale;
-                    self.typed = Some(typed);
+        let names = [("Ends", ends_unit), ("Picks", picks_unit)];
+        egui::Grid::new("threads a length")
+            .num_columns(2)
+            .spacing([tokens::PAD, tokens::GRID])
+            .show(ui, |ui| {
+                for (which, (name, unit)) in names.into_iter().enumerate() {
+                    let label = ui.label(name);
+                    let mut number = typed[which] * scale;
+                    let field = DragValue::new(&mut number)
+                        .speed(0.05)
+                        .range(0.5..=400.0)
+                        .max_decimals(2)
+                        .suffix(format!(" {unit}"));
+                    if ui.add(field).labelled_by(label.id).changed() {
+                        typed[which] = number / scale;
+                        self.typed = Some(typed);
+                    }
+                    ui.end_row();
                 }
             });
-        }
         let uneven = sett.ends.pitches_mm.is_some() || sett.picks.pitches_mm.is_some();
         if uneven {
             let text = "Threads are spaced unequally; another sett spaces them evenly.";

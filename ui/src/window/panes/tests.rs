@@ -40,9 +40,14 @@ fn build(
     builder.build_ui_state(
         |ui, bench: &mut Bench| {
             let mut actions = Vec::new();
-            bench
-                .panes
-                .show(bench.pane, ui, &bench.document, &mut actions);
+            let ground = egui::Frame::NONE
+                .fill(crate::tokens::Palette::current(ui).panel)
+                .inner_margin(crate::tokens::GAP);
+            egui::CentralPanel::default().frame(ground).show(ui, |ui| {
+                bench
+                    .panes
+                    .show(bench.pane, ui, &bench.document, &mut actions);
+            });
             for action in actions {
                 if let Action::Edit(edit) = &action {
                     bench.document.apply(Edit::clone(edit)).expect("an edit");
@@ -103,7 +108,7 @@ fn floats_are_listed_and_looked_at() {
 #[test]
 fn yarns_are_opened_exchanged_and_joined() {
     let mut harness = bench("default", Pane::Yarns);
-    wait(&mut harness, "m a m");
+    wait(&mut harness, "m for 1 m");
     harness.get_by_label("ecru").click();
     harness.run_steps(3);
     let before = harness.state().document.design().maps().clone();

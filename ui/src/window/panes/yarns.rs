@@ -10,7 +10,7 @@ use pickglass::edit::{Direction, Document, Edit};
 
 use super::dragging::Dragging;
 use super::later::Later;
-use super::swatches;
+use super::{columns, swatches};
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Button, Mark};
 
@@ -49,8 +49,10 @@ impl Yarns {
         let design = document.design();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.head_ui(ui, design, actions);
+            let names = design.yarns().iter().take(MOST_LISTED);
+            let column = columns::widest(ui, names.map(|yarn| yarn.name.as_str()));
             for index in 0..design.yarns().len().min(MOST_LISTED) {
-                self.yarn_ui(ui, document, index as u16, actions);
+                self.yarn_ui(ui, document, (index as u16, column), actions);
             }
             ui.separator();
             for (which, direction) in [Direction::Warp, Direction::Weft].into_iter().enumerate() {
@@ -104,7 +106,7 @@ impl Yarns {
         &mut self,
         ui: &mut egui::Ui,
         document: &Document,
-        index: u16,
+        (index, column): (u16, f32),
         actions: &mut Vec<Action>,
     ) {
         let id = YarnId(index);
@@ -122,7 +124,7 @@ impl Yarns {
                 set(id, changed, actions);
             }
             let open = self.open == Some(index);
-            let name = ui.selectable_label(open, &yarn.name);
+            let name = columns::cell(ui, column, |ui| ui.selectable_label(open, &yarn.name));
             let name = name.on_hover_text("Where it lies shows in the draft; click for more");
             focused = name.has_focus() || colour.has_focus();
             if name.clicked() {
@@ -142,9 +144,9 @@ impl Yarns {
                 yarn.family.name()
             );
             if let Some(need) = self.needs.answer().and_then(|n| n.get(usize::from(index))) {
-                told += &format!(" · {:.1} m a m", need.metres);
+                told += &format!(" · {:.1} m for 1 m", need.metres);
             }
-            ui.label(RichText::new(told).small().color(quiet));
+            ui.label(RichText::new(told).color(quiet));
         });
         if focused || ui.rect_contains_pointer(row.response.rect) {
             actions.push(Action::Mark(Mark::Yarn(id)));

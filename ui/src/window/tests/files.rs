@@ -237,3 +237,52 @@ fn presets_are_offered_as_thumbnails() {
         shows(window, "Drawdown of Herringbone")
     });
 }
+
+#[test]
+fn an_image_is_written_as_its_form_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = build(builder(), Some("herringbone"));
+    window.state_mut().preview.freeze();
+    window.run_steps(2);
+    let drawdown = {
+        let document = window.state().document().expect("open");
+        std::sync::Arc::clone(document.drawdown())
+    };
+    // What a reader who is told nothing makes of the file: black is warp up, and the
+    // lowest row is pick 1.
+    let read = |path: &std::path::Path| {
+        let image = image::open(path).expect("an image").to_luma8();
+        let black = |end, pick| image.get_pixel(end, image.height() - 1 - pick).0[0] == 0;
+        let size = (image.width(), image.height());
+        pickglass::design::WeavePattern::from_fn(size.0, size.1, black)
+    };
+    let mut write = |name: &str, answers: &[&str]| {
+        let path = folder.path().join(name);
+        window.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::E);
+        window.run_steps(3);
+        type_path(&mut window, &path.display().to_string(), "Export");
+        window.run_steps(3);
+        assert!(!path.exists(), "written before it was asked about");
+        for answer in answers {
+            window.get_by_label(answer).click();
+            window.run_steps(2);
+        }
+        window.get_by_label("Write it").click();
+        wait_for(&mut window, "the image", |_| path.exists());
+        path
+    };
+    let usual = read(&write("usual.png", &[]));
+    assert_eq!(usual, *drawdown);
+    // From an upper corner the image is turned by 180°.
+    let other = read(&write("other.png", &["weft up", "upper left"]));
+    let (ends, picks) = (drawdown.ends(), drawdown.picks());
+    assert_eq!((other.ends(), other.picks()), (ends, picks));
+    for (end, pick) in (0..picks).flat_map(|pick| (0..ends).map(move |end| (end, pick))) {
+        assert_eq!(
+            other.get(end, pick),
+            !drawdown.get(ends - 1 - end, picks - 1 - pick),
+            "{end} {pick}"
+        );
+    }
+    assert_ne!(other, usual);
+}

@@ -32,12 +32,15 @@ fn up(window: &Window, end: u32, pick: u32) -> bool {
     document.drawdown().get(end, pick)
 }
 
-/// The name and the place of what has the keyboard.
+/// The name and the place of what has the keyboard: nothing that has it is without a name.
 fn focused(window: &Window) -> Option<(String, Rect)> {
     let node = window
         .query_all(By::new().predicate(|node| node.is_focused()))
-        .next()?;
-    Some((node.accesskit_node().label()?, node.rect()))
+        .find(|node| node.accesskit_node().role() != egui::Role::Window)?;
+    let name = node.accesskit_node().label().unwrap_or_default();
+    let (role, place) = (node.accesskit_node().role(), node.rect());
+    assert!(!name.is_empty(), "no name: {role:?} at {place:?}");
+    Some((name, place))
 }
 
 /// All names that Tab comes to, once round.
@@ -76,6 +79,8 @@ fn tab_comes_to_everything() {
         "Warp colours",
         "Weft colours",
         "Cloth of",
+        "Divider between Draft and Cloth",
+        "Divider between Draft and Floats",
         "Floats",
         "Yarns",
         "Posterise",
@@ -85,6 +90,53 @@ fn tab_comes_to_everything() {
     for name in wanted {
         let there = names.iter().any(|stop| stop.starts_with(name));
         assert!(there, "no {name} among {names:?}");
+    }
+}
+
+#[test]
+fn dividers_are_moved_with_the_arrow_keys() {
+    let mut window = still_window("oxford");
+    let cloth = |window: &Window| {
+        let cloth = window.query_all_by_label_contains("Cloth of ").next();
+        cloth.expect("a cloth").rect()
+    };
+    let before = cloth(&window);
+    for (name, key, back) in [
+        (
+            "Divider between Draft and Cloth",
+            Key::ArrowLeft,
+            Key::ArrowRight,
+        ),
+        (
+            "Divider between Draft and Floats",
+            Key::ArrowUp,
+            Key::ArrowDown,
+        ),
+    ] {
+        window.get_by_label(name).focus();
+        window.run_steps(2);
+        press(&mut window, key);
+        let now = cloth(&window);
+        let by = [before.left() - now.left(), before.bottom() - now.bottom()];
+        let moved = if key == Key::ArrowLeft {
+            [16.0, 0.0]
+        } else {
+            [0.0, 16.0]
+        };
+        assert!((by[0] - moved[0]).abs() < 1.5, "{name}: {by:?}");
+        assert!((by[1] - moved[1]).abs() < 1.5, "{name}: {by:?}");
+        // Never so far that a pane is lost.
+        for _ in 0..100 {
+            press(&mut window, key);
+        }
+        assert!(cloth(&window).height() > 80.0 && cloth(&window).width() < 900.0);
+        for _ in 0..100 {
+            press(&mut window, back);
+        }
+        assert!(cloth(&window).width() > 80.0);
+        window.state_mut().layout.reset();
+        window.run_steps(3);
+        assert_eq!(cloth(&window), before);
     }
 }
 
@@ -295,7 +347,6 @@ fn whatever_has_the_keyboard_is_seen() {
         let (mut first, mut seen) = (None, 0);
         for _ in 0..400 {
             press(&mut window, Key::Tab);
-            // Borders between panes have no name, and are no widgets of ours.
             let Some((name, place)) = focused(&window) else {
                 continue;
             };

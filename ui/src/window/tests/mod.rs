@@ -10,6 +10,7 @@ mod large;
 mod opening;
 mod painting;
 mod pictures;
+mod states;
 mod times;
 mod viewing;
 

@@ -165,18 +165,19 @@ fn a_drawdown_that_follows_from_a_draft_asks_what_is_meant() {
     } else {
         PointerButton::Primary
     };
-    stroke(&mut window, &[(0, 2)], with);
-    assert_eq!(
-        up(&window, 0, 2),
-        before,
-        "nothing is painted before the answer"
-    );
+    let row = |window: &Window| [0, 1, 2, 3, 4, 5].map(|end| up(window, end, 2));
+    let drawn = row(&window);
+    stroke(&mut window, &[(0, 2), (1, 2), (3, 2)], with);
+    assert_eq!(row(&window), drawn, "nothing is painted before the answer");
     window.run_steps(2);
     window
         .get_by_label_contains("Derive the draft again")
         .click();
     window.run_steps(3);
-    assert_ne!(up(&window, 0, 2), before);
+    // All of the stroke, and no more.
+    let painted = [!before, !before, !before, !before, drawn[4], drawn[5]];
+    assert_eq!(row(&window), painted);
+    assert_eq!(entries(&window), 1);
     let is_draft = |window: &Window| {
         let document = window.state().document().expect("open");
         matches!(document.design().structure(), Structure::Draft(_))

@@ -5,10 +5,7 @@ use egui::pos2;
 use egui_kittest::SnapshotOptions;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
 
-use super::{build, builder, open, shows, wait_for};
-use crate::command_table::{Command, DraftLayout};
-use crate::opened::Opened;
-use crate::window::session::blank;
+use super::{build, builder, shows, wait_for};
 
 /// A renderer of snapshots. Without an adapter the test is skipped, or fails where
 /// goldens are required.
@@ -85,78 +82,5 @@ fn a_changed_picture_fails() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
     for ending in ["new", "diff"] {
         let _ = std::fs::remove_file(folder.join(format!("nothing_open.{ending}.png")));
-    }
-}
-
-/// What a person may meet, by name.
-fn states() -> Vec<(&'static str, Option<&'static str>, Vec<Command>)> {
-    vec![
-        ("start", None, vec![]),
-        ("blank", Some(""), vec![]),
-        (
-            "blank scandinavian",
-            Some(""),
-            vec![
-                Command::Arrange(DraftLayout::Scandinavian),
-                Command::LongFloats,
-            ],
-        ),
-        ("draft", Some("default"), vec![Command::Navigator]),
-        (
-            "structure",
-            Some("herringbone"),
-            vec![Command::Structure, Command::SelectAll],
-        ),
-        ("jacquard", Some("damask"), vec![Command::Navigator]),
-        ("palette", Some("oxford"), vec![Command::Palette]),
-        ("shortcuts", Some("oxford"), vec![Command::Shortcuts]),
-        ("repeat", Some("oxford"), vec![Command::Repeat]),
-        (
-            "unsaved",
-            Some("oxford"),
-            vec![Command::Invert, Command::New],
-        ),
-    ]
-}
-
-#[test]
-fn every_state_draws_itself_at_every_size_in_both_themes() {
-    let folder = std::env::var_os("PICKGLASS_PICTURES");
-    for (theme, word) in [(egui::Theme::Dark, "dark"), (egui::Theme::Light, "light")] {
-        for size in [[1024.0, 640.0], [2560.0, 1440.0]] {
-            for (name, design, commands) in states() {
-                let Some(renderer) = renderer("pictures of states") else {
-                    return;
-                };
-                let builder = builder()
-                    .with_size(size)
-                    .with_theme(theme)
-                    .renderer(renderer);
-                let opened = match design {
-                    Some("") => Some(blank().expect("a design")),
-                    Some(preset) => Some(Opened::preset(preset).expect("a preset")),
-                    None => None,
-                };
-                let mut window = open(builder, opened);
-                window.state_mut().preview.freeze();
-                window.run_steps(5);
-                let ctx = window.ctx.clone();
-                for command in commands {
-                    window.state_mut().obey(&ctx, command);
-                    window.run_steps(3);
-                }
-                // Thumbnails and the navigator are drawn on threads.
-                std::thread::sleep(std::time::Duration::from_millis(300));
-                window.run_steps(5);
-                let picture = window.render().expect("a picture");
-                let first = picture.get_pixel(2, 2);
-                let other = picture.pixels().filter(|pixel| *pixel != first).count();
-                assert!(other > 10_000, "{name} {word}: nothing is drawn");
-                if let Some(folder) = &folder {
-                    let file = format!("{name} {word} {}.png", size[0]);
-                    let _ = picture.save(std::path::Path::new(folder).join(file));
-                }
-            }
-        }
     }
 }
