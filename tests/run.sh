@@ -279,6 +279,12 @@ check_all() {
     step "no display" smoke_no_display
 }
 
+# What the window costs while its cloth is traced as in the program.
+window_times() {
+    PICKGLASS_TIMES=yes cargo test --release --workspace --quiet --bin pickglass -- \
+        --nocapture --test-threads 1 tests::times
+}
+
 measure_all() {
     local file name found=no
     for file in tests/benches/*.rs; do
@@ -288,6 +294,7 @@ measure_all() {
         step "bench $name" cargo bench --bench "$name" --profile release
     done
     [[ $found == yes ]] || say "there is nothing to measure"
+    step "times of the window" window_times
 }
 
 bench=no

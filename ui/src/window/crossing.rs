@@ -4,6 +4,7 @@ use pickglass::design::{FaceFloat, Structure, float_through};
 use pickglass::edit::Document;
 
 use super::draft::end_number;
+use super::laid;
 use crate::command_table::DraftLayout;
 
 /// Floats are counted up to this many threads; what runs further snags at any sett.
@@ -46,9 +47,11 @@ pub fn describe(
         }
         _ => String::new(),
     };
-    let ends = i64::from(drawdown.ends());
-    let end = end_number(i64::from(home_end), ends, arrangement);
-    let pick = home_pick + 1;
+    // Threads are counted over the repeat of the colours, as a warper does.
+    let (ends, picks) = laid::whole(design);
+    let (end, pick) = lattice.wrap(end, pick, ends, picks)?;
+    let end = end_number(i64::from(end), i64::from(ends), arrangement);
+    let pick = pick + 1;
     Some(format!(
         "end {end} · pick {pick} · {above} over {below} · {over}{region}"
     ))
@@ -79,6 +82,18 @@ mod tests {
             next.starts_with(&format!("end {ends} · pick 1 · ")),
             "{next}"
         );
+    }
+
+    #[test]
+    fn threads_are_counted_over_the_repeat_of_the_colours() {
+        let opened = Opened::preset("default").expect("a preset");
+        let document = Document::new(Design::clone(&opened.design));
+        let (ends, picks) = opened.design.colour_repeat();
+        assert!(ends > 4 && picks > 4);
+        let told = |at| describe(&document, at, DraftLayout::Scandinavian, [7; 2]).expect("cloth");
+        assert!(told((9, 5)).starts_with("end 10 · pick 6 · "));
+        let next = (ends as i64 + 9, 5 - picks as i64);
+        assert!(told(next).starts_with("end 10 · pick 6 · "));
     }
 
     #[test]

@@ -168,6 +168,12 @@ impl Behavior<Pane> for Shown<'_> {
         tokens::GRID
     }
 
+    /// Panes by their tabs. What would move all tabs at once lies behind them, without a
+    /// name, where Tab comes to it.
+    fn is_tile_draggable(&self, tiles: &Tiles<Pane>, tile: TileId) -> bool {
+        matches!(tiles.get(tile), Some(Tile::Pane(_)))
+    }
+
     /// By dividers of our own, which have names and hear keys.
     fn is_container_resizable(&self, _tiles: &Tiles<Pane>, _tile: TileId) -> bool {
         false

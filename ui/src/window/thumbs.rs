@@ -21,8 +21,10 @@ const PIXELS: u32 = 296;
 const LARGEST_CELL: usize = 6;
 /// Larger files are not opened for a picture, bytes.
 const LARGEST_FILE: u64 = 32 << 20;
-/// A picture whose pixels lie no further apart is of one colour.
-const PLAIN: u8 = 6;
+/// A picture whose squares lie no further apart shows no figure.
+const PLAIN: u8 = 8;
+/// Pixels along such a square.
+const SQUARE: usize = 8;
 /// Repeats of up to so many threads are shown close, larger ones whole.
 const CLOSE: u32 = 72;
 
@@ -217,7 +219,11 @@ fn woven(
         ..StillRequest::default()
     };
     let (title, caption) = (design.name.clone(), caption(&design));
-    let sight = FirstSight::new(design, drawdown, Arc::clone(tables));
+    let sight = FirstSight::new(
+        Arc::clone(&design),
+        Arc::clone(&drawdown),
+        Arc::clone(tables),
+    );
     let mut image = None;
     let done = sight.draw(&request, &Job::new(), &mut |pass| {
         let size = [pass.width as usize, pass.height as usize];
@@ -226,8 +232,10 @@ fn woven(
     if let Err(error) = done {
         log::warn!("{title}: its thumbnail stays a drawdown: {error}");
     }
-    // Cloth of one colour shows no weave from afar: its drawdown says more.
-    let image = image.filter(|image| spread(image) >= PLAIN);
+    // Cloth of one colour may show no figure from afar: its drawdown says more then.
+    let figure = spread(&swatch_of(&design, &drawdown));
+    let image =
+        image.filter(|image| figure < PLAIN || 3 * u16::from(spread(image)) > figure.into());
     Made {
         source,
         title,
@@ -237,13 +245,24 @@ fn woven(
     }
 }
 
-/// How far apart the lightness of a picture's pixels lies, but for the outermost of them.
+/// How far apart the lightness of a picture lies from place to place, but for the outermost:
+/// means of squares, so that threads count for nothing and figures for all.
 fn spread(image: &ColorImage) -> u8 {
-    let mut greens: Vec<u8> = image.pixels.iter().map(|pixel| pixel.g()).collect();
-    greens.sort_unstable();
-    let few = greens.len() / 20;
-    let at = |place: usize| greens.get(place).copied().unwrap_or_default();
-    at(greens.len().saturating_sub(few + 1)).saturating_sub(at(few))
+    let [width, height] = image.size;
+    let corners = (0..height / SQUARE).flat_map(|y| (0..width / SQUARE).map(move |x| (x, y)));
+    let mean = |(x, y): (usize, usize)| {
+        let rows = (y * SQUARE..(y + 1) * SQUARE).flat_map(|row| {
+            let first = row * width + x * SQUARE;
+            image.pixels.get(first..first + SQUARE).unwrap_or_default()
+        });
+        let sum: usize = rows.map(|pixel| usize::from(pixel.g())).sum();
+        (sum / (SQUARE * SQUARE)) as u8
+    };
+    let mut means: Vec<u8> = corners.map(mean).collect();
+    means.sort_unstable();
+    let few = means.len() / 20;
+    let at = |place: usize| means.get(place).copied().unwrap_or_default();
+    at(means.len().saturating_sub(few + 1)).saturating_sub(at(few))
 }
 
 /// As much of the drawdown as fits, in cells of whole pixels; large designs from afar.
@@ -306,7 +325,7 @@ mod tests {
                 .image
                 .is_none()
         );
-        let plain = ColorImage::filled([8, 8], egui::Color32::GRAY);
+        let plain = ColorImage::filled([64, 64], egui::Color32::GRAY);
         assert_eq!(spread(&plain), 0);
     }
 

@@ -242,7 +242,7 @@ impl Form {
         let palette = Palette::current(ui);
         let mut choice = None;
         ui.label(RichText::new("Export volume").text_style(egui::TextStyle::Heading));
-        let what = "A window of the cloth as voxels: .vol, .vdb, .nrrd, .mhd or .tif";
+        let what = "Voxels of a window of the cloth: .vol .vdb .nrrd .mhd .tif";
         ui.label(RichText::new(what).color(palette.quiet));
         ui.add_space(tokens::GAP);
         egui::Grid::new("volume form")

@@ -337,7 +337,7 @@ pub fn crosshair(painter: &Painter, grid: &CellGrid, areas: &Areas, (end, pick):
     }
 }
 
-/// The numbers of ends and picks, counted from 1 and, for ends, from the side the layout
+/// The numbers of ends and picks, counted from 1 over the repeat of the colours and, for ends, from the side the layout
 /// counts from.
 pub fn rulers(
     painter: &Painter,
@@ -349,7 +349,8 @@ pub fn rulers(
     palette: &Palette,
 ) {
     let font = FontId::proportional(tokens::TEXT_SMALL);
-    let (ends, picks) = (i64::from(design.ends()), i64::from(design.picks()));
+    let (ends, picks) = laid::whole(design);
+    let (ends, picks) = (i64::from(ends), i64::from(picks));
     let [seen_ends, seen_picks] = grid.visible();
     let density = grid.density;
 

@@ -108,7 +108,7 @@ fn floats_are_listed_and_looked_at() {
 #[test]
 fn yarns_are_opened_exchanged_and_joined() {
     let mut harness = bench("default", Pane::Yarns);
-    wait(&mut harness, "m for 1 m");
+    wait(&mut harness, "m per m");
     harness.get_by_label("ecru").click();
     harness.run_steps(3);
     let before = harness.state().document.design().maps().clone();

@@ -144,7 +144,7 @@ impl Yarns {
                 yarn.family.name()
             );
             if let Some(need) = self.needs.answer().and_then(|n| n.get(usize::from(index))) {
-                told += &format!(" · {:.1} m for 1 m", need.metres);
+                told += &format!(" · {:.1} m per m", need.metres);
             }
             ui.label(RichText::new(told).color(quiet));
         });

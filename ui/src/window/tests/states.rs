@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use egui_kittest::kittest::Queryable;
 use pickglass::edit::recovery::Found;
+use pickglass::edit::{Cells, Edit};
 
 use super::files::type_path;
 use super::opening::open_by_path;
@@ -77,8 +78,8 @@ const STATES: [(&str, Option<&str>, Way); 28] = [
         obey(window, Command::New);
     }),
     ("refused", Some(""), |window, _| {
-        obey(window, Command::SelectAll);
-        obey(window, Command::FillSelection);
+        let cells = Cells::of(16, 16, [(0, 0), (1, 0)]);
+        window.state_mut().edit(Edit::Flip(cells));
     }),
     ("still", Some("oxford"), |window, _| {
         obey(window, Command::ExportStill);

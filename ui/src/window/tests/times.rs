@@ -1,5 +1,6 @@
 //! What the window costs: time in its own callbacks while one paints, and how long an edit
-//! takes to be seen. All of it is told; no time fails a test.
+//! takes to be seen. All of it is told; no time fails a test. Where `PICKGLASS_TIMES` is
+//! set the cloth is traced as in the program, else crudely.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -13,7 +14,7 @@ use super::large::{paint, satin};
 use super::{PreviewSettings, Window, builder, options, wait_for};
 use crate::opened::Opened;
 use crate::window::action::Action;
-use crate::window::app::{App, AppOptions};
+use crate::window::app::App;
 use pickglass::exemplar::ExemplarStore;
 
 /// How often each edit is made.
@@ -92,17 +93,16 @@ impl Spent {
     }
 }
 
-/// A window whose cloth is traced as in the program.
+/// A window whose cloth is traced.
 fn live(opened: Opened) -> Window {
-    let preview = PreviewSettings {
-        store: ExemplarStore::user(),
-        effects: EffectChoice::default(),
-        dials: Vec::new(),
-    };
-    let options = AppOptions {
-        preview,
-        ..options()
-    };
+    let mut options = options();
+    if std::env::var_os("PICKGLASS_TIMES").is_some() {
+        options.preview = PreviewSettings {
+            store: ExemplarStore::user(),
+            effects: EffectChoice::default(),
+            dials: Vec::new(),
+        };
+    }
     let mut window: Window = builder()
         .build_eframe(|cc| App::new(&cc.egui_ctx, Some(opened), options).expect("a worker"));
     window.state_mut().files.typed_only = true;
