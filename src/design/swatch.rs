@@ -331,12 +331,14 @@ mod tests {
         let (e, p) = design
             .lattice()
             .wrap(end, pick, weave.ends(), weave.picks())?;
-        let yarn = if weave.get(e, p) {
-            design.warp_yarn(end, pick)
-        } else {
-            design.weft_yarn(end, pick)
-        };
-        Some(design.yarn(yarn).colour)
+        let (warp, weft) = (design.warp_yarn(end, pick), design.weft_yarn(end, pick));
+        let colour = |yarn| design.yarn(yarn).colour;
+        Some(match weave.get(e, p) {
+            true => colour(warp),
+            // No two yarns of the design are alike.
+            false if warp == weft => shaded(colour(weft)),
+            false => colour(weft),
+        })
     }
 
     fn window(level: u32) -> SwatchWindow {
