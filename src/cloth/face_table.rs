@@ -5,7 +5,7 @@
 //! they are lit. Light is direct light on the relief, hidden where a neighbour stands
 //! higher, and softened as fibres scatter it on. Brightness and tint are relative to the
 //! mean of the same neighbourhood under the default light, in which
-//! [`super::colour::Shown`] knows what yarns show.
+//! [`super::colour::colours_on_top`] knows what yarns show.
 
 use glam::Vec3;
 

@@ -2,7 +2,7 @@
 //!
 //! Every crossing shows what its neighbourhood, its yarns, the light and the side looked
 //! at make of it: the places of [`FaceTable`], in the colours of
-//! [`Shown`]. A crossing smaller than a pixel is its mean. What
+//! [`colours_on_top`]. A crossing smaller than a pixel is its mean. What
 //! lies behind the cloth, hairs and the slant of a view are not shown; the path tracer
 //! brings them.
 
@@ -17,7 +17,7 @@ use super::picture::{Pass, camera, lights};
 use super::prepare::coloured;
 use super::request::LightChoice;
 use super::{StillError, StillRequest};
-use crate::cloth::colour::Shown;
+use crate::cloth::colour::colours_on_top;
 use crate::cloth::{FaceRelief, FaceTable, YarnClasses};
 use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
@@ -29,6 +29,8 @@ use crate::synthesis::{Catalogue, Side, key_of};
 const MOST_SAMPLES: usize = 4;
 /// Tables that are kept for the next picture.
 const MOST_TABLES: usize = 24;
+/// Pairs of yarns whose colours are worked out in advance.
+const MOST_PAIRS: usize = 1024;
 /// Places of the curve from light to display values, and the light it reaches to.
 const CURVE: usize = 1 << 13;
 const BRIGHTEST: f32 = 2.0;
@@ -114,9 +116,8 @@ struct Sight<'d> {
     drawdown: &'d WeavePattern,
     classes: YarnClasses,
     tables: Vec<Arc<FaceTable>>,
-    /// By yarn.
-    shown: Vec<Shown>,
-    back: bool,
+    /// By warp and weft yarn.
+    colours: Vec<[Vec3; 2]>,
     ends: Positions,
     picks: Positions,
     level: usize,
@@ -215,6 +216,15 @@ impl FirstSight {
                 self.tables.get(&key, request.view)
             })
             .collect::<Result<Vec<_>, _>>()?;
+        let yarns = design.yarns();
+        let colours = if yarns.len() * yarns.len() <= MOST_PAIRS {
+            (yarns.iter())
+                .flat_map(|warp| yarns.iter().map(move |weft| (warp, weft)))
+                .map(|(warp, weft)| colours_on_top(warp, weft))
+                .collect()
+        } else {
+            Vec::new()
+        };
         let (ends, picks) = (design.end_positions(), design.pick_positions());
         let pitch = |positions: &Positions| positions.repeat_mm() / f64::from(positions.threads());
         let pixels = camera.pixels_per_mm() * pitch(&ends).min(pitch(&picks)) as f32;
@@ -233,8 +243,7 @@ impl FirstSight {
             drawdown: &self.drawdown,
             classes,
             tables,
-            shown: design.yarns().iter().map(Shown::of).collect(),
-            back: request.view.turns_over(),
+            colours,
             ends,
             picks,
             level: FaceTable::level(pixels),
@@ -323,39 +332,37 @@ impl Sight<'_> {
 
     fn crossing(&self, end: i64, pick: i64) -> Option<Crossing> {
         let here = self.up(end, pick)?;
-        let yarns = |end, pick| {
-            (
-                self.design.warp_yarn(end, pick),
-                self.design.weft_yarn(end, pick),
-            )
-        };
-        let (mut beside, mut around) = ([here; 4], Vec3::ZERO);
-        for (up, side) in beside.iter_mut().zip(Side::ALL) {
-            let (ends, picks) = side.offset();
-            let (end, pick) = (end + ends, pick + picks);
-            *up = self.up(end, pick).unwrap_or(here);
-            let (warp, weft) = yarns(end, pick);
-            let seen = if *up == self.back { weft } else { warp };
-            around += 0.25 * self.shown(seen).alone;
-        }
-        let (warp, weft) = yarns(end, pick);
-        let [over, under] = [warp, weft].map(|yarn| self.shown(yarn));
+        let beside = |end, pick| self.up(end, pick).unwrap_or(here);
+        let key = key_of(
+            here,
+            Side::ALL.map(|side| {
+                let (ends, picks) = side.offset();
+                beside(end + ends, pick + picks)
+            }),
+        );
+        let (warp, weft) = (
+            self.design.warp_yarn(end, pick),
+            self.design.weft_yarn(end, pick),
+        );
         Some(Crossing {
             end,
             pick,
-            key: key_of(here, beside),
+            key,
             set: self.classes.set(warp, weft),
             warp,
             weft,
-            colours: [
-                over.among(under.alone, around),
-                under.among(over.alone, around),
-            ],
+            colours: self.colours(warp, weft),
         })
     }
 
-    fn shown(&self, yarn: YarnId) -> Shown {
-        self.shown[usize::from(yarn.0)]
+    fn colours(&self, warp: YarnId, weft: YarnId) -> [Vec3; 2] {
+        let yarns = self.design.yarns().len();
+        let known = self
+            .colours
+            .get(usize::from(warp.0) * yarns + usize::from(weft.0));
+        known
+            .copied()
+            .unwrap_or_else(|| colours_on_top(self.design.yarn(warp), self.design.yarn(weft)))
     }
 
     /// What a later picture is told of a place of a crossing.
