@@ -92,10 +92,9 @@ fn first_sight_resembles_the_converged_picture() {
         let seen = looked(&request, &picture(&first(&design), &request, name));
         let (likeness, colour) = (ssim(&seen, &traced), mean_delta_e(&seen, &traced));
         println!("{name} {view:?} {light}: SSIM {likeness:.3}, ΔE {colour:.2}");
-        // A damask of one silk is seen by its sheen alone, which first sight does not show;
-        // nor does it show the colour of the light.
-        let least = if name == "damask" { 0.2 } else { 0.8 };
-        if likeness < least || colour > 10.0 {
+        // A damask of one silk is seen by its sheen alone, which first sight does not show.
+        let least = if name == "damask" { 0.2 } else { 0.75 };
+        if likeness < least || colour > 12.0 {
             faults.push(format!("{name}: {likeness:.3} {colour:.2}"));
         }
         // Control: the same cloth half a repeat away does not resemble it, nor does the
