@@ -18,7 +18,7 @@ from screen import middle
 PHOTOGRAPH = pathlib.Path(__file__).resolve().parent.parent / "pictures" / "astronaut.png"
 # The cloth refines until it has so many samples, or so long, s.
 SAMPLES = 48
-PATIENCE = 240
+PATIENCE = 100
 
 
 class Tour:
