@@ -8,6 +8,7 @@ With Pillow the pictures are written in 256 colours, a quarter of the size.
 import os
 import pathlib
 import re
+import shutil
 import sys
 import tempfile
 import time
@@ -72,10 +73,12 @@ class Tour:
 
     def posterise(self):
         desk = self.desk
+        # By its name alone, so that no folder of this machine is in the picture.
+        shutil.copy(PHOTOGRAPH, desk.folder / "work")
         desk.start(self.program, "oxford")
         desk.sees("Drawdown of ")
         desk.key("alt+5")
-        desk.fill("Picture", "field", PHOTOGRAPH)
+        desk.fill("Picture", "field", PHOTOGRAPH.name)
         desk.fill("Ends", "number", 480)
         desk.fill("Colours", "number", 5)
         desk.sees("480 ends ×")
