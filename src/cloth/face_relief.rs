@@ -10,13 +10,11 @@ use rayon::prelude::*;
 
 use crate::design::WeavePattern;
 use crate::exemplar::{Pair, layout};
-use crate::synthesis::{Catalogue, Side, key_of};
+use crate::synthesis::{Catalogue, KEYS, Side, key_of};
 use crate::yarn::{Direction, WeaveGeometry};
 
 /// Texels along a crossing's side at the finest level.
 pub const TEXELS: usize = 12;
-/// Neighbourhoods of a crossing.
-pub(super) const KEYS: usize = 32;
 /// Directions round a spot in which the horizon is searched.
 pub(super) const AZIMUTHS: usize = 8;
 /// How far, in texels.

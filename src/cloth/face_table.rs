@@ -9,8 +9,9 @@
 
 use glam::Vec3;
 
-use super::face_relief::{AZIMUTHS, FaceRelief, KEYS, Spot, TEXELS};
+use super::face_relief::{AZIMUTHS, FaceRelief, Spot, TEXELS};
 use crate::render::{Environment, LightRig, Sky, luminance};
+use crate::synthesis::KEYS;
 
 /// Texels along a side, level by level.
 const SIDES: [usize; 4] = [TEXELS, 6, 3, 1];

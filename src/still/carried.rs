@@ -18,6 +18,7 @@ use super::picture::byte;
 use crate::design::{Yarn, YarnId};
 use crate::exemplar::Pair;
 use crate::render::tone::{decode_srgb, encode_srgb};
+use crate::synthesis::KEYS;
 
 /// Cells along a crossing's side in which what was seen is told apart.
 const CELLS: usize = 4;
@@ -243,8 +244,6 @@ impl Sum {
 /// Neighbourhood and yarns.
 type Class = (u8, YarnId, YarnId);
 type Sums = [Sum; CELLS * CELLS];
-/// Neighbourhoods of a crossing.
-const KEYS: usize = 32;
 
 /// What a traced picture tells beyond first sight.
 struct Known {

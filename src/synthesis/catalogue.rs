@@ -53,6 +53,9 @@ impl Side {
     }
 }
 
+/// Keys that a crossing can have.
+pub const KEYS: usize = 32;
+
 /// The key of a crossing: bit 0 = warp up here, then its neighbours in the order of
 /// [`Side::ALL`].
 pub fn key_of(here: bool, beside: [bool; 4]) -> u8 {

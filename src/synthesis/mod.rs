@@ -36,7 +36,7 @@ mod shift;
 mod weaves;
 
 pub use assign::{Assignment, Method, assign, assign_part};
-pub use catalogue::{Catalogue, Place, Side, key_of};
+pub use catalogue::{Catalogue, KEYS, Place, Side, key_of};
 pub use edges::{BOUND_COLUMN, EdgeFix, NeighbourBits, Rank, SeamCoefficients};
 pub use heights::{EdgeHeights, Face};
 pub use lookup::{BlockRef, Neighbourhood, Placement, SeamRms};
