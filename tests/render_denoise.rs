@@ -5,6 +5,7 @@ mod render_scenes;
 use std::time::Instant;
 
 use glam::Vec3;
+use pickglass::job::Job;
 use pickglass::render::{Denoise, Film, LightRig, RenderSettings, Sample, luminance};
 use pickglass::volume::Taps;
 use render_scenes::{YarnGrid, shoot, silk_satin, wool_twill};
@@ -19,6 +20,11 @@ fn film(scene: &YarnGrid, share: f32, size: u32, spp: u32, seed: u64) -> Film {
         ..RenderSettings::default()
     };
     shoot(&grid, &camera, &lights, &settings).film
+}
+
+fn denoised(denoise: Denoise, film: &Film) -> Vec<Vec3> {
+    let clean = denoise.apply(film, &Job::new());
+    clean.expect("nobody cancels it")
 }
 
 /// Relative RMS difference in luminance.
@@ -76,15 +82,15 @@ fn denoising_reduces_the_error_and_keeps_the_detail() {
         for spp in [4, 16] {
             let noisy = film(&scene, share, size, spp, 0);
             let before = error(&noisy.means(), &reference);
-            let denoised = Denoise::default().apply(&noisy);
-            let after = error(&denoised, &reference);
+            let clean = denoised(Denoise::default(), &noisy);
+            let after = error(&clean, &reference);
             let blur = error(&blurred(&noisy.means(), size as usize), &reference);
             let off = Denoise {
                 strength: 0.0,
                 ..Denoise::default()
             };
-            assert_eq!(off.apply(&noisy), noisy.means());
-            let kept = detail(&denoised, size as usize) / detail(&reference, size as usize);
+            assert_eq!(denoised(off, &noisy), noisy.means());
+            let kept = detail(&clean, size as usize) / detail(&reference, size as usize);
             println!(
                 "{name} {spp} spp: {before:.3} -> {after:.3}, box {blur:.3}, detail {kept:.2}"
             );
@@ -115,9 +121,9 @@ fn a_firefly_stays_alone_and_poison_is_harmless() {
             pixel.add(index, &sample(f32::NAN));
         }
     }
-    let denoised = Denoise::default().apply(&film);
+    let clean = denoised(Denoise::default(), &film);
     assert!(
-        denoised
+        clean
             .iter()
             .all(|p| p.is_finite() && p.x > 0.3 && p.x < 1.0)
     );
@@ -126,7 +132,7 @@ fn a_firefly_stays_alone_and_poison_is_harmless() {
         let film = Film::new(width, height);
         for radius in [0, 1, 9, u32::MAX] {
             for strength in [0.0, 1.0, f32::NAN, f32::INFINITY, -1.0] {
-                let out = Denoise { radius, strength }.apply(&film);
+                let out = denoised(Denoise { radius, strength }, &film);
                 assert!(out.iter().all(|p| *p == Vec3::ZERO));
             }
         }
@@ -134,9 +140,12 @@ fn a_firefly_stays_alone_and_poison_is_harmless() {
 }
 
 #[test]
-fn a_megapixel_is_denoised_soon() {
+fn a_megapixel_is_denoised_soon_or_not_at_all_once_cancelled() {
     let film = Film::new(1024, 1024);
     let begun = Instant::now();
-    Denoise::default().apply(&film);
+    denoised(Denoise::default(), &film);
     println!("1024x1024: {:.2} s", begun.elapsed().as_secs_f64());
+    let job = Job::new();
+    job.cancel();
+    assert!(Denoise::default().apply(&film, &job).is_err());
 }

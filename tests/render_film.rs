@@ -2,14 +2,16 @@
 
 mod render_scenes;
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use glam::{UVec3, Vec3};
 use pickglass::formats::exr;
 use pickglass::formats::png::{self, Depth, Metadata, Picture};
 use pickglass::job::Job;
 use pickglass::render::error::DARK;
 use pickglass::render::{
-    Backing, Bounds, Dome, Film, LightRig, PRESET_NAMES, Pixel, Ray, RenderSettings, Sample, Sky,
-    Tone, View, order_histogram, render,
+    Backing, Bounds, Collision, Counters, Dome, Film, LightRig, PRESET_NAMES, Pixel, Random, Ray,
+    RenderSettings, Sample, Scatterer, Sky, Tone, View, order_histogram, render,
 };
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 use render_scenes::{lone_sun, shoot, silk_satin, wool_twill};
@@ -153,6 +155,58 @@ fn error_and_deadline_and_cancel_stop_the_work() {
         },
     );
     assert!(outcome.is_err());
+}
+
+/// A scatterer whose owner cancels the job at its first ray, and that counts rays.
+struct Impatient {
+    job: Job,
+    rays: AtomicU32,
+}
+
+impl Scatterer for Impatient {
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            min: Vec3::splat(-1.0),
+            max: Vec3::splat(1.0),
+        }
+    }
+
+    fn collide(&self, _: &Ray, _: f32, _: &mut Random, _: &mut Counters) -> Option<Collision> {
+        self.job.cancel();
+        self.rays.fetch_add(1, Ordering::Relaxed);
+        None
+    }
+
+    fn transmittance(&self, _: &Ray, _: f32, _: f32, _: &mut Random, _: &mut Counters) -> f32 {
+        1.0
+    }
+
+    fn albedo(&self, _: u32) -> Vec3 {
+        Vec3::ONE
+    }
+}
+
+/// A row of dense cloth takes a second: a newer picture must not wait for it.
+#[test]
+fn a_cancel_is_heard_within_a_pixel() {
+    let job = Job::new();
+    let scene = Impatient {
+        job: job.clone(),
+        rays: AtomicU32::new(0),
+    };
+    let middle = Vec3::ZERO;
+    let camera = View::Face.camera(middle, 1.0, 400, 8);
+    let lights = LightRig::preset("day").expect("a preset");
+    let settings = RenderSettings {
+        spp: 1,
+        ..RenderSettings::default()
+    };
+    let rendered = in_threads(2, || {
+        render(&scene, &camera, &lights, &settings, &job, &mut |_, _| {})
+    });
+    assert!(rendered.is_err());
+    let rays = scene.rays.load(Ordering::Relaxed);
+    assert!((1..=2).contains(&rays), "{rays} rays of 3200");
 }
 
 /// A white diffuser under every preset has luminance 1: that of the white backing over

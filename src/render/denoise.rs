@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::environment::luminance;
 use super::film::{Film, Pixel};
+use crate::job::{Cancelled, Job};
 
 /// How strongly to denoise.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,19 +56,27 @@ struct Planes {
 
 impl Denoise {
     /// The film's mean radiances, denoised; premultiplied, row by row from the top.
-    pub fn apply(&self, film: &Film) -> Vec<Vec3> {
+    ///
+    /// # Errors
+    /// When the job is cancelled.
+    pub fn apply(&self, film: &Film, job: &Job) -> Result<Vec<Vec3>, Cancelled> {
         let mut result = film.means();
         if result.is_empty() || self.strength <= 0.0 || self.strength.is_nan() {
-            return result;
+            return Ok(result);
         }
+        job.check()?;
         let planes = Planes::new(film);
         let radius = self.radius.min(16) as isize;
         let strength = self.strength.min(4.0);
         result
             .par_chunks_mut(planes.width * BAND)
             .enumerate()
-            .for_each(|(band, rows)| planes.filter(rows, band * BAND, radius, strength));
-        result
+            .try_for_each(|(band, rows)| {
+                job.check()?;
+                planes.filter(rows, band * BAND, radius, strength);
+                Ok(())
+            })?;
+        Ok(result)
     }
 }
 

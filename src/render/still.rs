@@ -150,7 +150,6 @@ impl Exposure<'_> {
             .par_chunks_mut((width * TILE).max(1) as usize)
             .enumerate()
             .map(|(band, pixels)| {
-                self.job.check()?;
                 let mut counters = Counters::default();
                 if first > 0 && self.job.expired() {
                     unfinished.store(true, Ordering::Relaxed);
@@ -161,6 +160,8 @@ impl Exposure<'_> {
                 for left in (0..width).step_by(TILE as usize) {
                     for row in 0..rows {
                         for x in left..(left + TILE).min(width) {
+                            // A pass of dense cloth takes seconds; an edit must not wait.
+                            self.job.check()?;
                             let pixel = &mut pixels[(row * width + x) as usize];
                             self.expose(path, pixel, [x, top + row], first, spp, &mut counters);
                         }

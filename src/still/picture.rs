@@ -218,7 +218,10 @@ impl Shot<'_> {
             }
             let picture = if denoise {
                 let begun = Instant::now();
-                let picture = tone.picture_of(film, &Denoise::default().apply(film));
+                let Ok(clean) = Denoise::default().apply(film, &job) else {
+                    return;
+                };
+                let picture = tone.picture_of(film, &clean);
                 denoised = Some((Instant::now(), begun.elapsed()));
                 picture
             } else {
@@ -363,11 +366,12 @@ impl Still {
     /// The picture as shown: denoised unless the request said no, sRGB with straight alpha.
     pub fn picture(&self) -> png::Picture {
         if self.denoise {
-            let clean = Denoise::default().apply(&self.film);
-            self.tone.picture_of(&self.film, &clean)
-        } else {
-            self.tone.picture(&self.film)
+            // Nobody cancels this one.
+            if let Ok(clean) = Denoise::default().apply(&self.film, &Job::new()) {
+                return self.tone.picture_of(&self.film, &clean);
+            }
         }
+        self.tone.picture(&self.film)
     }
 
     /// What the picture's file says of it.
