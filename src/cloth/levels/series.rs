@@ -35,7 +35,7 @@ pub fn places(key: u8) -> [u32; 2] {
     } else {
         0
     };
-    [LOWER, 0].map(|lower| (kind + lower | hand << HAND) << PLACE.trailing_zeros())
+    [LOWER, 0].map(|lower| ((kind + lower) | (hand << HAND)) << PLACE.trailing_zeros())
 }
 
 /// The kind of place of an arrival, below [`KINDS`] in a corrected cloth.
