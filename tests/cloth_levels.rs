@@ -9,9 +9,9 @@ use pickglass::formats::presets;
 use pickglass::job::Job;
 use pickglass::still::{self, StillRequest, Stop};
 
-/// Mean radiance and coverage of a shirting whose gaps are seen.
-fn shirting(level: u32, corrected: bool) -> [f64; 2] {
-    let design = Arc::new(presets::design("oxford").unwrap().unwrap());
+/// Mean radiance and coverage of a design.
+fn shown(name: &str, level: u32, corrected: bool) -> [f64; 2] {
+    let design = Arc::new(presets::design(name).unwrap().unwrap());
     let dial = |name: &str, value: String| (name.to_owned(), value);
     let request = StillRequest {
         width: 56,
@@ -44,17 +44,20 @@ fn shirting(level: u32, corrected: bool) -> [f64; 2] {
 
 #[test]
 fn coarse_levels_keep_light_and_coverage() {
-    let [light, cover] = shirting(0, true);
-    for (level, least_light, least_cover) in [(1, 0.012, 0.004), (2, 0.03, 0.008)] {
+    // A shirting whose gaps are seen.
+    let [light, cover] = shown("oxford", 0, true);
+    for (level, least_light, least_cover) in [(1, 0.008, 0.003), (2, 0.02, 0.008), (3, 0.03, 0.015)]
+    {
         let off = |[coarse, covered]: [f64; 2]| [coarse / light - 1.0, covered - cover];
-        let averaged = off(shirting(level, false));
-        let corrected = off(shirting(level, true));
+        let averaged = off(shown("oxford", level, false));
+        let corrected = off(shown("oxford", level, true));
         println!("level {level}: averaged {averaged:.4?}, corrected {corrected:.4?}");
-        assert!(corrected[0].abs() < 0.02, "{corrected:?}");
-        assert!(corrected[1].abs() < 0.006, "{corrected:?}");
+        assert!(corrected[0].abs() < 0.03, "{corrected:?}");
+        assert!(corrected[1].abs() < 0.01, "{corrected:?}");
         assert!(
             averaged[0] > least_light && averaged[1] > least_cover,
             "{averaged:?}"
         );
+        assert!(corrected[1].abs() < 0.5 * averaged[1], "level {level}");
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::levels::{Extinction, LevelCorrection};
+use super::levels::{LevelCorrection, Matter, series};
 use super::window::Window;
 use crate::design::{
     Design, Family, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps,
@@ -131,17 +131,15 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
-/// Extinction by fill of each set's warp and weft, as their families are corrected.
-fn extinctions(
+/// How the voxels of each set's warp and weft are read, as their families are corrected.
+fn matter(
     sets: &[Arc<ExemplarSet>],
     of: impl Fn(Family) -> Option<LevelCorrection>,
-) -> Arc<[[Extinction; 2]]> {
-    let extinction = |recipe: &YarnRecipe| {
-        let gamma = of(recipe.family).map_or(1.0, |correction| correction.gamma);
-        Extinction::new(recipe.full_extinction(), gamma)
-    };
+) -> Arc<[[Matter; 2]]> {
+    let matter =
+        |recipe: &YarnRecipe| Matter::new(recipe.full_extinction(), of(recipe.family).as_ref());
     (sets.iter())
-        .map(|set| [&set.pair.warp, &set.pair.weft].map(&extinction))
+        .map(|set| [&set.pair.warp, &set.pair.weft].map(&matter))
         .collect()
 }
 
@@ -204,8 +202,10 @@ pub struct ClothVolume {
     pub(super) ends: Positions,
     pub(super) picks: Positions,
     pub(super) grid: VoxelGrid,
-    /// Extinction by fill, by set: warp, weft.
-    pub(super) extinction: Arc<[[Extinction; 2]]>,
+    /// How voxels are read, by set: warp, weft.
+    pub(super) matter: Arc<[[Matter; 2]]>,
+    /// How each block's lower and upper yarn stand, see [`series::places`]; empty at level 0.
+    pub(super) places: Vec<[u32; 2]>,
     /// What corrects the light of each yarn; empty at level 0.
     pub(super) corrections: Vec<Option<LevelCorrection>>,
     /// SGGX roughness by yarn.
@@ -297,7 +297,15 @@ impl ClothVolume {
         let SynthesisSettings { seed, patch, .. } = settings.synthesis;
         let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
         let grid = sets.first().map_or_else(VoxelGrid::default, |set| set.grid);
-        let extinction = extinctions(&sets, |family| correction(family, &grid, &settings));
+        let matter = matter(&sets, |family| correction(family, &grid, &settings));
+        let corrections = corrections(design, &grid, &settings);
+        let places = if corrections.is_empty() {
+            Vec::new()
+        } else {
+            (0..catalogue.blocks() as u16)
+                .map(|block| series::places(catalogue.key(block)))
+                .collect()
+        };
         Ok(Self {
             grid,
             catalogue,
@@ -311,8 +319,9 @@ impl ClothVolume {
             maps: design.maps().clone(),
             ends: design.end_positions(),
             picks: design.pick_positions(),
-            extinction,
-            corrections: corrections(design, &grid, &settings),
+            matter,
+            places,
+            corrections,
             alpha: design.yarns().iter().map(roughness).collect(),
             albedo,
             settings,
@@ -381,7 +390,7 @@ impl ClothVolume {
     /// measuring them. Level 0 is never corrected.
     pub fn with_corrections(mut self, of: impl Fn(Family) -> LevelCorrection) -> Self {
         if self.grid.level > 0 {
-            self.extinction = extinctions(&self.sets, |family| Some(of(family)));
+            self.matter = matter(&self.sets, |family| Some(of(family)));
             for correction in self.corrections.iter_mut().flatten() {
                 *correction = of(correction.family);
             }

@@ -254,7 +254,7 @@ impl VoxelSource for ClothWindow<'_> {
     }
 
     fn densest(&self) -> f32 {
-        let all = self.cloth.extinction.iter().flatten();
+        let all = self.cloth.matter.iter().flatten();
         all.fold(0.0, |top: f32, extinction| top.max(extinction.most()))
     }
 

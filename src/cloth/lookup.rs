@@ -114,8 +114,8 @@ impl ClothVolume {
     /// The voxel at a point of a crossing given in voxels (x and y from the crossing's
     /// corner, z from the exemplar's floor), which may lie up to a block across its border.
     /// One whose `sigma` is below `least` may be given as empty. Coarse voxels choose among
-    /// the directions of their fibres by `chance`, uniform in [0,1); without one they give
-    /// the main direction.
+    /// the directions of their fibres by `chance`, uniform in [0,1), and say where they
+    /// stand; without one they give the main direction.
     #[inline]
     pub(super) fn voxel_near<'c>(
         &'c self,
@@ -178,8 +178,8 @@ impl ClothVolume {
         let place = [source.corner[0] + x, source.corner[1] + y, height as usize];
         let voxel = source.volume.get(place[0], place[1], place[2]);
         let weft = voxel.is_weft();
-        let sigma =
-            self.extinction[usize::from(crossing.block.set)][usize::from(weft)].at(voxel.fill());
+        let matter = &self.matter[usize::from(crossing.block.set)][usize::from(weft)];
+        let sigma = matter.at(voxel.fill());
         if !(sigma > 0.0 && sigma >= least) {
             return Voxel::EMPTY;
         }
@@ -204,11 +204,16 @@ impl ClothVolume {
                 .unwrap_or_else(|| self.warp_yarn(end, crossing.pick))
         };
         let mut direction = voxel.direction();
+        let mut stands = 0;
         if source.volume.coarse()
             && let Some(chance) = chance
         {
+            if let Some(places) = self.places.get(usize::from(crossing.block.block)) {
+                let warp_up = self.catalogue.key(crossing.block.block) & 1 == 1;
+                stands = places[usize::from(warp_up != weft)];
+            }
             let lobes = source.volume.lobes(place[0], place[1], place[2]);
-            direction = lobes.direction(direction, bits_of(chance));
+            direction = lobes.direction(direction, bits_of(chance), matter.spread);
         }
         if let Some(rise) = seams
             && self.settings.shear
@@ -219,7 +224,7 @@ impl ClothVolume {
             sigma,
             direction,
             alpha: self.alpha[usize::from(yarn.0)],
-            optics: u32::from(yarn.0),
+            optics: u32::from(yarn.0) | stands,
         }
     }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::build::ClothVolume;
 use super::lookup::Crossing;
 use crate::exemplar::{CELL, cell_of};
-use crate::render::{Arrival, Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
+use crate::render::{Arrival, Bounds, MajorantWalk, Medium, PLACE, Ray, Stretch, Voxel};
 
 /// Half the side of the largest cloth, mm: rays leave it at last.
 const REACH_MM: f32 = 4000.0;
@@ -82,14 +82,14 @@ impl Medium for ClothVolume {
 
     fn albedo(&self, optics: u32) -> Vec3 {
         self.albedo
-            .get(optics as usize)
+            .get((optics & !PLACE) as usize)
             .copied()
             .unwrap_or(Vec3::ZERO)
     }
 
     #[inline]
     fn gain(&self, arrival: &Arrival) -> f32 {
-        match self.corrections.get(arrival.optics as usize) {
+        match self.corrections.get((arrival.optics & !PLACE) as usize) {
             Some(Some(correction)) => correction.gain(arrival),
             _ => 1.0,
         }
@@ -206,7 +206,7 @@ impl MajorantWalk for ClothWalk<'_> {
                 .cloth
                 .majorants
                 .block(crossing.block.set, crossing.block.block);
-            let [warp, weft] = &self.cloth.extinction[usize::from(crossing.block.set)];
+            let [warp, weft] = &self.cloth.matter[usize::from(crossing.block.set)];
             // Pass over empty cells.
             loop {
                 let cells = &mut self.cells;

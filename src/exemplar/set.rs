@@ -111,6 +111,14 @@ fn voxels_along(pitch: f32, level: u32) -> usize {
 }
 
 impl VoxelGrid {
+    /// Voxels along x and y of a block that level 0 has at this grid's spacing.
+    pub fn fine(&self) -> [usize; 2] {
+        if self.level == 0 {
+            return [self.block[0], self.block[1]];
+        }
+        self.pitch().to_array().map(|pitch| voxels_along(pitch, 0))
+    }
+
     /// Spacing of ends and picks, mm.
     pub fn pitch(&self) -> Vec2 {
         self.voxel_mm.truncate() * Vec2::new(self.block[0] as f32, self.block[1] as f32)
@@ -118,10 +126,8 @@ impl VoxelGrid {
 
     /// Geometric mean of a voxel's sides, µm: of this grid, and of level 0 at its spacing.
     pub fn voxel_um(&self) -> [f32; 2] {
-        let fine = self
-            .pitch()
-            .to_array()
-            .map(|pitch| pitch / voxels_along(pitch, 0) as f32);
+        let (pitch, fine) = (self.pitch(), self.fine());
+        let fine = [pitch.x / fine[0] as f32, pitch.y / fine[1] as f32];
         [
             self.voxel_mm.element_product().cbrt(),
             (fine[0] * fine[1]).sqrt(),

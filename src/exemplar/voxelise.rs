@@ -40,6 +40,8 @@ struct Strands {
     planes: usize,
     /// Points to a voxel.
     steps: usize,
+    /// Points to a voxel of level 0, at least 1.
+    baseline: f32,
     /// Share of a splat that a voxel takes, so that all levels hold as much fibre.
     share: f32,
     /// Yarn of each fibre.
@@ -102,9 +104,16 @@ fn strands(
     seed: u64,
 ) -> Strands {
     let layout = FibreLayout::new(recipe);
-    // From level 3 on a cloth is there for its first second: a point a voxel is enough.
-    let steps = if grid.level < 3 { 1 << grid.level } else { 1 };
+    // As many points as level 0 has, or a few more: a highlight shows where the slope is
+    // the right one, and slopes come from points as far apart as those of level 0.
+    let (across, along) = match direction {
+        Direction::Warp => (1, weave.weft.len()),
+        Direction::Weft => (0, weave.warp.len()),
+    };
+    let fine = grid.fine()[across] * along;
+    let steps = fine.div_ceil(planes.max(1)).max(1);
     let planes = planes * steps;
+    let baseline = planes as f32 / fine.max(1) as f32;
     let radius = recipe.fibre_um * 0.5e-3;
     let yarns = weave.yarns(direction).len();
     let mut points = vec![Vec3::ZERO; yarns * layout.len() * planes];
@@ -127,6 +136,7 @@ fn strands(
         points,
         planes,
         steps,
+        baseline,
         share: share_of(direction, radius, grid) / steps as f32,
         yarns,
         radius,
@@ -210,12 +220,18 @@ struct Splat {
 
 impl Splat {
     fn new(strands: &Strands, points: &[Vec3], plane: usize, voxel_mm: Vec3, yarn: u8) -> Self {
-        // Direction by central difference; at the ends of the repeat, one-sided.
+        // Direction by central difference over two voxels of level 0, at whatever level; at
+        // the ends of the repeat, one-sided.
+        let at = |place: f32| {
+            let place = place.clamp(0.0, (points.len() - 1) as f32);
+            let (from, part) = (place as usize, place.fract());
+            points[from].lerp(points[(from + 1).min(points.len() - 1)], part)
+        };
         let (before, after) = (
-            points[plane.saturating_sub(1)],
-            points[(plane + 1).min(points.len() - 1)],
+            plane as f32 - strands.baseline,
+            plane as f32 + strands.baseline,
         );
-        let step = (after - before) * voxel_mm;
+        let step = (at(after) - at(before)) * voxel_mm;
         let direction = step.try_normalize().unwrap_or(match strands.direction {
             Direction::Warp => Vec3::Y,
             Direction::Weft => Vec3::X,

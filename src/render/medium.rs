@@ -60,9 +60,13 @@ pub struct Voxel {
     pub direction: Vec3,
     /// SGGX roughness α, 0.01..=1; 1 = isotropic.
     pub alpha: f32,
-    /// Names the optics: [`Medium::albedo`] resolves it.
+    /// Names the optics: [`Medium::albedo`] resolves it. Bits of [`PLACE`] say where in
+    /// the medium's pattern the voxel lies, for [`Medium::gain`] alone.
     pub optics: u32,
 }
+
+/// The bits of a voxel's optics that do not name the optics.
+pub const PLACE: u32 = 0x7fff_0000;
 
 impl Voxel {
     /// Empty space.
@@ -118,6 +122,8 @@ pub struct Arrival {
     pub optics: u32,
     /// Its fibre, unit.
     pub fibre: Vec3,
+    /// Its roughness α.
+    pub alpha: f32,
     /// Where the path went on to the eye, unit.
     pub to_eye: Vec3,
     /// Where the light came from, unit.

@@ -12,7 +12,7 @@ use super::counters::Counters;
 use super::environment::{Environment, luminance};
 use super::film::{FirstHit, Sample};
 use super::light::Sun;
-use super::medium::{Arrival, Ray};
+use super::medium::{Arrival, PLACE, Ray};
 use super::random::Random;
 use super::settings::Background;
 use super::track::{SECOND, Scatterer};
@@ -150,6 +150,7 @@ impl Vertex {
                     order,
                     optics,
                     fibre: fibre.direction,
+                    alpha: fibre.alpha,
                     to_eye: wi,
                     to_light: wo,
                 };
@@ -407,6 +408,6 @@ fn first_hit(ray: &Ray, hit: &super::track::Collision, albedo: Vec3) -> FirstHit
         albedo,
         normal: (towards_viewer - fibre * towards_viewer.dot(fibre)).normalize_or(towards_viewer),
         depth: hit.t,
-        optics: hit.voxel.optics & !SECOND,
+        optics: hit.voxel.optics & !(SECOND | PLACE),
     }
 }

@@ -2,25 +2,23 @@
 //!
 //! `cargo bench --bench levels` prints the time to build the exemplars of each level, and
 //! mean radiance and coverage of the cloth against level 0, six designs under four lights,
-//! with the correction and without it (`-- NAME` for some designs alone). `-- --fit`
-//! measures the corrections and prints the table; `-- --fit --write` puts it in the place
-//! of `presets/levels.ron`. Nothing is asserted.
+//! with the correction and without it (`-- NAME` for some designs alone). `-- --fit DIR`
+//! measures the corrections, keeping what is measured in a folder, and prints the table;
+//! `-- --fit DIR --write` puts it in the place of `presets/levels.ron`. Nothing is
+//! asserted.
+
+#[path = "levels_fit.rs"]
+mod levels_fit;
 
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::Vec3;
-use pickglass::cloth::levels::fit::{self, Light};
-use pickglass::cloth::levels::{LevelCorrection, TERMS};
-use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
-use pickglass::design::{Design, Family, Filled, Sett, Srgb, Structure, Yarn, YarnId, YarnMaps};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::{atomic, presets};
 use pickglass::job::Job;
 use pickglass::render::{Film, Pixel};
 use pickglass::still::{self, LightChoice, StillRequest, Stop};
-use pickglass::synthesis::Catalogue;
 
 const DESIGNS: [&str; 6] = [
     "denim",
@@ -33,16 +31,6 @@ const DESIGNS: [&str; 6] = [
 const LIGHTS: [&str; 4] = ["day", "studio", "sun", "raking-left"];
 const SPP: u32 = 32;
 
-/// Weaves that the corrections are measured on, from both sides.
-const WEAVES: [&str; 4] = ["plain", "2/2 twill", "7/1 satin", "1/7 satin"];
-/// Layers of cloth on each other in a measurement: alone, and opaque.
-const LAYERS: [u32; 2] = [1, 2];
-/// Paths and rays a measurement.
-const PATHS: u32 = 1 << 13;
-const RAYS: u32 = 1 << 15;
-/// Exponents of the fill that are tried.
-const GAMMAS: [f32; 2] = [0.8, 3.0];
-
 /// Mean radiance (over pixels and channels) and mean coverage of a picture.
 fn means(film: &Film) -> (f64, f64) {
     let count = film.pixels().len() as f64;
@@ -53,8 +41,18 @@ fn means(film: &Film) -> (f64, f64) {
     )
 }
 
-/// Seconds to build the exemplars, and the means under each light.
-fn measured(name: &str, level: u32, corrected: bool) -> (f64, Vec<(f64, f64)>) {
+/// A cloth at a level.
+struct Measured {
+    /// Seconds to make it.
+    seconds: f64,
+    /// Voxels of a block.
+    block: [usize; 3],
+    /// Mean radiance and coverage under each light.
+    means: Vec<(f64, f64)>,
+}
+
+/// Makes a design at a level and looks at it under each light.
+fn measured(name: &str, level: u32, corrected: bool) -> Measured {
     let design = Arc::new(presets::design(name).expect("there").expect("sound"));
     let switch = if corrected { "on" } else { "off" };
     let request = StillRequest {
@@ -84,10 +82,15 @@ fn measured(name: &str, level: u32, corrected: bool) -> (f64, Vec<(f64, f64)>) {
         let still = still::render(&cloth, &request, &Job::new(), &mut |_| {});
         means(&still.expect("a picture").film)
     };
-    (seconds, LIGHTS.iter().map(under).collect())
+    Measured {
+        seconds,
+        block: cloth.cloth().sets()[0].grid.block,
+        means: LIGHTS.iter().map(under).collect(),
+    }
 }
 
-/// Prints what the levels of the chosen designs do to light.
+/// Prints what the levels of the chosen designs do to light. Small blocks have no voxels
+/// coarser than eight a side: there level 4 is level 3.
 fn compare(chosen: &[String]) {
     println!("mean radiance against level 0 (and difference of coverage): {LIGHTS:?}");
     let mut worst = [0.0f64; 2];
@@ -95,24 +98,31 @@ fn compare(chosen: &[String]) {
         if !chosen.is_empty() && !chosen.iter().any(|word| word == name) {
             continue;
         }
-        let (seconds, fine) = measured(name, 0, false);
-        println!("{name:12} level 0  built in {seconds:5.2} s");
+        let fine = measured(name, 0, false);
+        println!("{name:12} level 0  built in {:5.2} s", fine.seconds);
+        let mut last = fine.block;
         for level in 1..=4 {
-            for corrected in [false, true] {
-                let (seconds, coarse) = measured(name, level, corrected);
-                let errors = (fine.iter().zip(&coarse)).map(|(f, c)| c.0 / f.0 - 1.0);
-                for error in errors {
-                    let worst = &mut worst[usize::from(corrected)];
-                    *worst = worst.max(error.abs());
+            let coarse = measured(name, level, true);
+            if coarse.block == last {
+                println!("{name:12} level {level} is level {}", level - 1);
+                continue;
+            }
+            last = coarse.block;
+            let both = [measured(name, level, false), coarse];
+            for (way, coarse) in ["averaged", "corrected"].into_iter().zip(&both) {
+                let pairs = || fine.means.iter().zip(&coarse.means);
+                let worst = &mut worst[usize::from(way == "corrected")];
+                for (f, c) in pairs() {
+                    *worst = worst.max((c.0 / f.0 - 1.0).abs());
                 }
-                let row: Vec<String> = (fine.iter().zip(&coarse))
+                let row: Vec<String> = pairs()
                     .map(|(f, c)| {
                         format!("{:+6.2} % ({:+.3})", 100.0 * (c.0 / f.0 - 1.0), c.1 - f.1)
                     })
                     .collect();
                 println!(
-                    "{name:12} level {level} {:9} built in {seconds:5.2} s  {}",
-                    if corrected { "corrected" } else { "averaged" },
+                    "{name:12} level {level} {way:9} built in {:5.2} s  {}",
+                    coarse.seconds,
                     row.join("  ")
                 );
             }
@@ -122,166 +132,24 @@ fn compare(chosen: &[String]) {
     println!("largest error: {before:.2} % averaged, {after:.2} % corrected");
 }
 
-/// A weave in one white yarn of a family at its usual size and sett.
-fn white(family: Family, weave: &str) -> Design {
-    let yarn = Yarn::new("white", family, Srgb(255, 255, 255));
-    let maps = YarnMaps::plain(YarnId(0), YarnId(0));
-    let sett: Sett = pickglass::design::usual_sett(std::slice::from_ref(&yarn), &maps);
-    let structure = Structure::Weave(Filled::once(weave).expect("a weave"));
-    Design::new(weave, structure, vec![yarn], maps, sett).expect("a design")
-}
-
-fn cloth(design: &Design, level: u32) -> ClothVolume {
-    let catalogue = Arc::new(Catalogue::standard());
-    let settings = ClothSettings {
-        level,
-        correct_levels: true,
-        ..ClothSettings::default()
-    };
-    let job = Job::new();
-    let (assignment, needed) =
-        ClothVolume::assign(design, &catalogue, &settings, &job).expect("blocks");
-    let classes = YarnClasses::new(design);
-    let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).expect("a grid");
-    let store = ExemplarStore::none();
-    let sets = (classes.pairs.iter())
-        .map(|pair| (store.get(&catalogue, pair, grid, &needed, &job)).expect("exemplars"))
-        .collect();
-    let albedo = vec![Vec3::ONE; design.yarns().len()];
-    ClothVolume::new(
-        design, catalogue, classes, assignment, sets, albedo, settings, &job,
-    )
-    .expect("a cloth")
-}
-
-fn transmittance(cloth: &ClothVolume) -> f64 {
-    fit::transmittance(cloth, RAYS, &Job::new()).expect("not cancelled")
-}
-
-fn light(cloth: &ClothVolume) -> Vec<Light> {
-    LAYERS
-        .map(|layers| fit::measure(cloth, layers, PATHS, &Job::new()).expect("not cancelled"))
-        .into()
-}
-
-/// The exponent with which the coarse cloths let through as much light as the fine ones
-/// did, all weaves together.
-fn gamma(family: Family, voxel_um: f32, cloths: &[ClothVolume], wanted: f64) -> f32 {
-    let excess = |gamma: f32| {
-        let with = |cloth: &ClothVolume| {
-            let correction = LevelCorrection {
-                gamma,
-                ..LevelCorrection::none(family, voxel_um)
-            };
-            transmittance(&cloth.clone().with_corrections(|_| correction))
-        };
-        cloths.iter().map(with).sum::<f64>() - wanted
-    };
-    let [mut low, mut high] = GAMMAS;
-    // More of γ lets through more light.
-    for _ in 0..7 {
-        let middle = 0.5 * (low + high);
-        if excess(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
-}
-
-fn entry(row: &LevelCorrection) -> String {
-    let list = |values: [f32; TERMS]| values.map(|value| format!("{value:.4}")).join(", ");
-    format!(
-        "    (family: {:?}, voxel_um: {:.3}, gamma: {:.3}, single: ({}), multiple: ({})),\n",
-        row.family,
-        row.voxel_um,
-        row.gamma,
-        list(row.single),
-        list(row.multiple)
-    )
-}
-
-/// Measures the table of corrections.
-fn fit_all(write: bool, chosen: &[String]) {
-    let mut table = String::from("[\n");
-    for family in Family::ALL {
-        if !chosen.is_empty() && !chosen.iter().any(|word| word == family.name()) {
-            continue;
-        }
-        let designs = WEAVES.map(|weave| white(family, weave));
-        let begun = Instant::now();
-        let cloths = designs.each_ref().map(|design| cloth(design, 0));
-        let through: f64 = cloths.iter().map(transmittance).sum();
-        let fine: Vec<Light> = cloths.iter().flat_map(light).collect();
-        let um = |cloth: &ClothVolume| cloth.sets()[0].grid.voxel_um()[0];
-        table += &entry(&LevelCorrection::none(family, um(&cloths[0])));
-        eprintln!(
-            "{} level 0: voxels of {:.2} µm, lets through {:.4}, {:.0} s",
-            family.name(),
-            um(&cloths[0]),
-            through / WEAVES.len() as f64,
-            begun.elapsed().as_secs_f64()
-        );
-        let mut last = um(&cloths[0]);
-        for level in 1..=4 {
-            let begun = Instant::now();
-            let cloths = designs.each_ref().map(|design| cloth(design, level));
-            let voxel_um = um(&cloths[0]);
-            // Small blocks have no coarser voxels than eight a side.
-            if voxel_um < 1.02 * last {
-                continue;
-            }
-            last = voxel_um;
-            let gamma = gamma(family, voxel_um, &cloths, through);
-            let density = LevelCorrection {
-                gamma,
-                ..LevelCorrection::none(family, voxel_um)
-            };
-            let coarse: Vec<Light> = (cloths.into_iter())
-                .map(|cloth| cloth.with_corrections(|_| density))
-                .flat_map(|cloth| light(&cloth))
-                .collect();
-            let pairs: Vec<(Light, Light)> = fine.iter().cloned().zip(coarse).collect();
-            let (single, multiple, residual) = fit::solve(&pairs);
-            let row = LevelCorrection {
-                single,
-                multiple,
-                ..density
-            };
-            let [before, after] = [residual.before, residual.after].map(|e| e.map(|e| 100.0 * e));
-            eprint!(
-                "{} level {level}: error {:.2} % (most {:.2} %), corrected {:.2} % ({:.2} %), {:.0} s\n{}",
-                family.name(),
-                before[0],
-                before[1],
-                after[0],
-                after[1],
-                begun.elapsed().as_secs_f64(),
-                entry(&row)
-            );
-            table += &entry(&row);
-        }
-    }
-    table += "]\n";
-    if write && chosen.is_empty() {
-        let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/levels.ron");
-        atomic::write(&preset, table.as_bytes()).expect("the preset is written");
-    } else {
-        print!("{table}");
-    }
-}
-
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let is = |name: &str| words.iter().any(|word| word == name);
-    let chosen: Vec<String> = (words.iter())
-        .filter(|word| !word.starts_with('-'))
-        .cloned()
-        .collect();
-    if is("--fit") {
-        fit_all(is("--write"), &chosen);
+    let fit = words.iter().position(|word| word == "--fit");
+    if let Some(place) = fit {
+        let kept = words
+            .get(place + 1)
+            .map_or("levels-measured", String::as_str);
+        let table = levels_fit::table(Path::new(kept));
+        if words.iter().any(|word| word == "--write") {
+            let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/levels.ron");
+            atomic::write(&preset, table.as_bytes()).expect("the preset is written");
+        } else {
+            print!("{table}");
+        }
     } else {
+        let chosen: Vec<String> = (words.into_iter())
+            .filter(|word| !word.starts_with('-'))
+            .collect();
         compare(&chosen);
     }
 }

@@ -1,0 +1,131 @@
+//! What a gain depends on: the kind of place, and the directions of light, eye and fibre.
+
+use glam::Vec3;
+
+use crate::render::{Arrival, PLACE};
+
+/// Terms of a gain's series.
+pub const TERMS: usize = 11;
+/// Kinds of places where light is scattered.
+pub const KINDS: usize = 18;
+/// Terms that each kind of place has a factor of its own for: the first ones.
+pub const OWN: usize = 2;
+
+/// Light scattered more often than this is that of pale yarns.
+const OFTEN: f32 = 32.0;
+/// The lower yarn's kinds follow the upper one's.
+const LOWER: u32 = 9;
+/// Bits of a place: its kind, and from here on the hand of its twill line.
+const HAND: u32 = 5;
+
+/// How the lower and the upper yarn of a block of this key stand, as bits of [`PLACE`].
+///
+/// The upper yarn's float goes on to none, one or both sides of the block, and none, one
+/// or both yarns beside it are up as well: nine kinds, for warp and weft alike, and nine
+/// more for the lower yarn. Where one and one are, they make a twill's line, which has a
+/// hand.
+pub fn places(key: u8) -> [u32; 2] {
+    let up = key & 1;
+    let same = |bit: u8| u32::from(key >> bit & 1 == up);
+    let [x, y] = [same(1) + same(2), same(3) + same(4)];
+    let (along, across) = if up == 1 { (y, x) } else { (x, y) };
+    let kind = along * 3 + across;
+    let hand = if (along, across) == (1, 1) {
+        1 + u32::from(same(2) == same(4))
+    } else {
+        0
+    };
+    [LOWER, 0].map(|lower| ((kind + lower) | (hand << HAND)) << PLACE.trailing_zeros())
+}
+
+/// The kind of place of an arrival, below [`KINDS`] in a corrected cloth.
+#[inline]
+pub fn kind(arrival: &Arrival) -> usize {
+    let place = (arrival.optics & PLACE) >> PLACE.trailing_zeros();
+    (place & ((1 << HAND) - 1)) as usize
+}
+
+/// The terms of the series at an arrival, each between −1 and 1: how often the light was
+/// scattered (two of them), how low it stands over the cloth, how far it comes along the fibre, how far
+/// the fibre is off a mirror's direction (½ where the half vector leans by α), on which
+/// side of a twill's lines the light stands, the fibre's slope, and how far the fibre's
+/// seen side faces the light.
+#[inline]
+pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
+    let place = (arrival.optics & PLACE) >> PLACE.trailing_zeros();
+    let hand = [0.0, -1.0, 1.0, 0.0][(place >> HAND & 3) as usize];
+    let (light, eye, fibre) = (arrival.to_light, arrival.to_eye, arrival.fibre);
+    let order = arrival.order.max(1) as f32;
+    let low = 1.0 - light.z.abs().min(1.0);
+    let half = (eye + light).normalize_or(Vec3::Z);
+    let lean = half.dot(fibre).powi(2);
+    let off = lean / (lean + arrival.alpha * arrival.alpha).max(1e-6);
+    let seen = (eye - fibre * eye.dot(fibre)).normalize_or(Vec3::Z);
+    [
+        1.0,
+        1.0 / order,
+        order / (order + OFTEN),
+        low,
+        low * low,
+        light.dot(fibre).powi(2),
+        off,
+        off * low,
+        hand * light.x * light.y,
+        fibre.z * fibre.z,
+        seen.dot(light),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(key: u8, upper: bool) -> (u32, u32) {
+        let bits = places(key)[usize::from(upper)] >> PLACE.trailing_zeros();
+        (bits & 31, bits >> HAND)
+    }
+
+    #[test]
+    fn kinds_tell_crowns_floats_and_lines_apart_and_warp_and_weft_are_alike() {
+        // Bits: centre, left, right, below, above.
+        let (crown, middle) = (0b00001, 0b11001);
+        assert_eq!(place(crown, true), (0, 0));
+        assert_eq!(place(middle, true), (6, 0));
+        assert_eq!(place(0b11111, true), (8, 0));
+        for key in 0..32u8 {
+            let turned = (key & 1) | (key & 0b110) << 2 | (key & 0b11000) >> 2;
+            let (kind, hand) = place(key, true);
+            assert!(kind < 9 && hand < 3, "{key}");
+            assert_eq!(place(key, false).0, kind + 9);
+            // A weft that lies as this warp does is of the same kind.
+            assert_eq!(place(turned ^ 31, true).0, kind, "{key}");
+        }
+        // A line that rises to the right and one that rises to the left.
+        let (z, s) = (0b10101, 0b10011);
+        assert_eq!((place(z, true), place(s, true)), ((4, 2), (4, 1)));
+    }
+
+    #[test]
+    fn terms_are_bounded_in_all_directions() {
+        let ring = |i: usize| {
+            let (sine, cosine) = (0.37 * i as f32).sin_cos();
+            let z = (i % 21) as f32 / 10.0 - 1.0;
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            Vec3::new(r * cosine, r * sine, z)
+        };
+        for i in 0..2000 {
+            let arrival = Arrival {
+                order: i as u32 % 5,
+                optics: 7 | places((i % 32) as u8)[i % 2],
+                fibre: ring(i),
+                alpha: 0.08,
+                to_eye: ring(3 * i + 1),
+                to_light: ring(7 * i + 2),
+            };
+            assert!(kind(&arrival) < KINDS);
+            for term in terms(&arrival) {
+                assert!((-1.001..=1.001).contains(&term), "{arrival:?}: {term}");
+            }
+        }
+    }
+}
