@@ -131,39 +131,32 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
-/// How the voxels of each set's warp and weft are read, as their families are corrected.
+/// How the voxels of each set's warp and weft are read, and the corrections of their light:
+/// each once, by the number that the voxels name.
 fn matter(
     sets: &[Arc<ExemplarSet>],
-    of: impl Fn(Family) -> Option<LevelCorrection>,
-) -> Arc<[[Matter; 2]]> {
-    let matter =
-        |recipe: &YarnRecipe| Matter::new(recipe.full_extinction(), of(recipe.family).as_ref());
-    (sets.iter())
-        .map(|set| [&set.pair.warp, &set.pair.weft].map(&matter))
-        .collect()
-}
-
-/// The correction of a family's light and density on a grid, where it is wanted.
-fn correction(
-    family: Family,
-    grid: &VoxelGrid,
-    settings: &ClothSettings,
-) -> Option<LevelCorrection> {
-    (settings.correct_levels).then(|| LevelCorrection::of(family, grid))?
-}
-
-/// The corrections of the light of a design's yarns; none at level 0.
-pub(super) fn corrections(
-    design: &Design,
-    grid: &VoxelGrid,
-    settings: &ClothSettings,
-) -> Vec<Option<LevelCorrection>> {
-    if grid.level == 0 || !settings.correct_levels {
-        return Vec::new();
-    }
-    (design.yarns().iter())
-        .map(|yarn| correction(yarn.family, grid, settings))
-        .collect()
+    of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
+) -> (Arc<[[Matter; 2]]>, Vec<LevelCorrection>) {
+    let mut corrections: Vec<LevelCorrection> = Vec::new();
+    let matter = (sets.iter())
+        .map(|set| {
+            [&set.pair.warp, &set.pair.weft].map(|recipe| {
+                let correction = of(recipe.family, set);
+                let number = match &correction {
+                    Some(own) => (corrections.iter().position(|known| known == own))
+                        .unwrap_or_else(|| {
+                            corrections.push(own.clone());
+                            corrections.len() - 1
+                        }),
+                    None => series::UNCORRECTED,
+                };
+                let corrected = series::corrected(number);
+                Matter::new(recipe.full_extinction(), correction.as_ref(), corrected)
+            })
+        })
+        .collect();
+    corrections.truncate(series::UNCORRECTED);
+    (matter, corrections)
 }
 
 /// SGGX roughness of a yarn's fibres.
@@ -206,8 +199,8 @@ pub struct ClothVolume {
     pub(super) matter: Arc<[[Matter; 2]]>,
     /// How each block's lower and upper yarn stand, see [`series::places`]; empty at level 0.
     pub(super) places: Vec<[u32; 2]>,
-    /// What corrects the light of each yarn; empty at level 0.
-    pub(super) corrections: Vec<Option<LevelCorrection>>,
+    /// What corrects the light, by the number that voxels name; empty at level 0.
+    pub(super) corrections: Vec<LevelCorrection>,
     /// SGGX roughness by yarn.
     pub(super) alpha: Vec<f32>,
     /// Single-scattering albedo by yarn.
@@ -297,8 +290,9 @@ impl ClothVolume {
         let SynthesisSettings { seed, patch, .. } = settings.synthesis;
         let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
         let grid = sets.first().map_or_else(VoxelGrid::default, |set| set.grid);
-        let matter = matter(&sets, |family| correction(family, &grid, &settings));
-        let corrections = corrections(design, &grid, &settings);
+        let (matter, corrections) = matter(&sets, |family, set| {
+            (settings.correct_levels).then(|| LevelCorrection::of(family, set))?
+        });
         let places = if corrections.is_empty() {
             Vec::new()
         } else {
@@ -381,19 +375,18 @@ impl ClothVolume {
         if alike {
             self.recolour(design.yarns().iter().map(super::colour::albedo).collect());
             self.alpha = design.yarns().iter().map(roughness).collect();
-            self.corrections = corrections(design, &self.grid, &self.settings);
         }
         alike
     }
 
-    /// The same cloth with other corrections of its level, one a yarn's family: for
-    /// measuring them. Level 0 is never corrected.
-    pub fn with_corrections(mut self, of: impl Fn(Family) -> LevelCorrection) -> Self {
+    /// The same cloth with other corrections of its level: for measuring them. Level 0 is
+    /// never corrected.
+    pub fn with_corrections(
+        mut self,
+        of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
+    ) -> Self {
         if self.grid.level > 0 {
-            self.matter = matter(&self.sets, |family| Some(of(family)));
-            for correction in self.corrections.iter_mut().flatten() {
-                *correction = of(correction.family);
-            }
+            (self.matter, self.corrections) = matter(&self.sets, of);
         }
         self
     }

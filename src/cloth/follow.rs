@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::build::{ClothError, ClothVolume, YarnClasses, corrections, fitted, roughness};
+use super::build::{ClothError, ClothVolume, YarnClasses, fitted, roughness};
 use super::colour;
 use crate::design::{Design, WeavePattern};
 use crate::exemplar::ExemplarSet;
@@ -63,7 +63,6 @@ impl ClothVolume {
         cloth.picks = design.pick_positions();
         cloth.alpha = design.yarns().iter().map(roughness).collect();
         cloth.albedo = design.yarns().iter().map(colour::albedo).collect();
-        cloth.corrections = corrections(design, &self.grid, &self.settings);
         cloth.window = Arc::default();
         Ok(Some(cloth))
     }

@@ -210,7 +210,7 @@ impl ClothVolume {
         {
             if let Some(places) = self.places.get(usize::from(crossing.block.block)) {
                 let warp_up = self.catalogue.key(crossing.block.block) & 1 == 1;
-                stands = places[usize::from(warp_up != weft)];
+                stands = places[usize::from(warp_up != weft)] | matter.corrected;
             }
             let lobes = source.volume.lobes(place[0], place[1], place[2]);
             direction = lobes.direction(direction, bits_of(chance), matter.spread);
@@ -284,16 +284,12 @@ impl ClothVolume {
     fn with_rise(&self, shift_at: impl Fn(usize, usize) -> f32, x: usize, y: usize) -> StackShift {
         let (bx, by) = self.edge_fix.block_size();
         let here = shift_at(x, y);
-        let across = if x + 1 < bx {
-            shift_at(x + 1, y) - here
-        } else {
-            here - shift_at(x.saturating_sub(1), y)
-        };
-        let along = if y + 1 < by {
-            shift_at(x, y + 1) - here
-        } else {
-            here - shift_at(x, y.saturating_sub(1))
-        };
+        // Half-way between the neighbours on both sides; at the rims there is one.
+        let [left, right] = [x.saturating_sub(1), (x + 1).min(bx - 1)];
+        let [below, above] = [y.saturating_sub(1), (y + 1).min(by - 1)];
+        let rise = |from: f32, to: f32, steps: usize| (to - from) / steps.max(1) as f32;
+        let across = rise(shift_at(left, y), shift_at(right, y), right - left);
+        let along = rise(shift_at(x, below), shift_at(x, above), above - below);
         StackShift {
             shift: here,
             rise: [across, along],

@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use super::build::ClothVolume;
+use super::levels::series;
 use super::lookup::Crossing;
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{Arrival, Bounds, MajorantWalk, Medium, PLACE, Ray, Stretch, Voxel};
@@ -89,10 +90,8 @@ impl Medium for ClothVolume {
 
     #[inline]
     fn gain(&self, arrival: &Arrival) -> f32 {
-        match self.corrections.get((arrival.optics & !PLACE) as usize) {
-            Some(Some(correction)) => correction.gain(arrival),
-            _ => 1.0,
-        }
+        (self.corrections.get(series::correction(arrival.optics)))
+            .map_or(1.0, |correction| correction.gain(arrival))
     }
 }
 

@@ -13,6 +13,7 @@ use std::hash::BuildHasherDefault;
 use std::ops::AddAssign;
 
 use glam::{Vec3, Vec4};
+use rayon::prelude::*;
 
 use super::picture::byte;
 use crate::design::{Yarn, YarnId};
@@ -26,6 +27,10 @@ const CELLS: usize = 4;
 const ENOUGH: f32 = 3.0;
 /// Pixels whose worth a coarser statistic has beside a finer one.
 const PRIOR: f32 = 12.0;
+/// Parts that a picture is learnt from at once, and the fewest pixels of one: whatever the
+/// number of threads, so that sums have the same bits.
+const PARTS: usize = 8;
+const LEAST_PART: usize = 1 << 13;
 /// Light below which a channel tells nothing of what is darker or brighter.
 const LEAST: f32 = 0.01;
 
@@ -107,7 +112,10 @@ impl Sighted {
             return None;
         }
         let changed_at = |at: usize| self.rgba[at * 4..][..4] != after.rgba[at * 4..][..4];
-        let changed = (0..pixels).filter(|&at| changed_at(at)).count();
+        let changed = (0..pixels)
+            .into_par_iter()
+            .filter(|&at| changed_at(at))
+            .count();
         let mut rgba = traced.to_vec();
         if changed > 0 {
             let light = Light::new();
@@ -121,8 +129,7 @@ impl Sighted {
                 .map(|pair| self.pairs.iter().position(|known| known == pair))
                 .map(|set| set.map_or(u16::MAX, |set| set as u16))
                 .collect();
-            let mut known = known.reader();
-            for at in (0..pixels).filter(|&at| changed_at(at)) {
+            let carry = |at: usize, pixel: &mut [u8], known: &mut Reader<'_>| {
                 let range = at * 4..at * 4 + 4;
                 let (before, mut place) = (self.places[at], after.places[at]);
                 place.set = sets
@@ -138,14 +145,25 @@ impl Sighted {
                     let known = match own {
                         true => Traced {
                             traced: light.of(&traced[range.clone()]),
-                            sight: light.of(&self.rgba[range.clone()]),
+                            sight: light.of(&self.rgba[range]),
                         },
                         false => known.traced(&place),
                     };
                     known.carry(seen)
                 });
-                light.put(shown, &mut rgba[range]);
-            }
+                light.put(shown, pixel);
+            };
+            let part = part_of(pixels);
+            rgba.par_chunks_mut(part * 4)
+                .enumerate()
+                .for_each(|(index, pixels)| {
+                    let mut known = known.reader();
+                    for (at, pixel) in (index * part..).zip(pixels.chunks_exact_mut(4)) {
+                        if changed_at(at) {
+                            carry(at, pixel, &mut known);
+                        }
+                    }
+                });
         }
         Some(Carried {
             rgba,
@@ -226,6 +244,14 @@ impl AddAssign<Traced> for Sum {
     }
 }
 
+impl AddAssign for Sum {
+    fn add_assign(&mut self, more: Self) {
+        self.sum.traced += more.sum.traced;
+        self.sum.sight += more.sum.sight;
+        self.count += more.count;
+    }
+}
+
 impl Sum {
     /// The mean, with what a coarser statistic makes of it standing for pixels not seen.
     fn mean(&self, coarser: &Traced) -> Traced {
@@ -249,7 +275,7 @@ type Sums = [Sum; CELLS * CELLS];
 struct Known {
     /// By neighbourhood and yarns: where its cells lie.
     classes: HashMap<Class, u32, BuildHasherDefault<std::hash::DefaultHasher>>,
-    cells: Vec<Sums>,
+    cells: Vec<(Class, Sums)>,
     /// By pair, neighbourhood and cell.
     crossings: Vec<Sum>,
     /// By pair and whether the warp is up.
@@ -259,16 +285,35 @@ struct Known {
 
 impl Known {
     fn of(sighted: &Sighted, traced: &[u8], light: &Light) -> Self {
-        let mut known = Self {
+        let part = part_of(sighted.places.len());
+        let parts: Vec<Self> = (sighted.places.par_chunks(part))
+            .zip(traced.par_chunks(part * 4))
+            .zip(sighted.rgba.par_chunks(part * 4))
+            .map(|((places, traced), sight)| {
+                let mut known = Self::nothing(sighted.pairs.len());
+                known.learn(places, traced, sight, light);
+                known
+            })
+            .collect();
+        let mut known = Self::nothing(sighted.pairs.len());
+        parts.into_iter().for_each(|part| known.add(part));
+        known
+    }
+
+    fn nothing(pairs: usize) -> Self {
+        Self {
             classes: HashMap::default(),
             cells: Vec::new(),
-            crossings: vec![Sum::default(); sighted.pairs.len() * KEYS * CELLS * CELLS],
-            sides: vec![Sum::default(); sighted.pairs.len() * 2],
+            crossings: vec![Sum::default(); pairs * KEYS * CELLS * CELLS],
+            sides: vec![Sum::default(); pairs * 2],
             all: Sum::default(),
-        };
+        }
+    }
+
+    fn learn(&mut self, places: &[Place], traced: &[u8], sight: &[u8], light: &Light) {
         let mut last: Option<(Class, u32)> = None;
-        let pixels = traced.chunks_exact(4).zip(sighted.rgba.chunks_exact(4));
-        for (place, (traced, sight)) in sighted.places.iter().zip(pixels) {
+        let pixels = traced.chunks_exact(4).zip(sight.chunks_exact(4));
+        for (place, (traced, sight)) in places.iter().zip(pixels) {
             if place.cell == NOWHERE {
                 continue;
             }
@@ -276,28 +321,47 @@ impl Known {
                 traced: light.of(traced),
                 sight: light.of(sight),
             };
-            known.all += pixel;
-            if let Some(sum) = known.sides.get_mut(side(place)) {
+            self.all += pixel;
+            if let Some(sum) = self.sides.get_mut(side(place)) {
                 *sum += pixel;
             }
             let Some(cell) = place.cell_index() else {
                 continue;
             };
-            if let Some(sum) = known.crossings.get_mut(crossing(place, cell)) {
+            if let Some(sum) = self.crossings.get_mut(crossing(place, cell)) {
                 *sum += pixel;
             }
             let class = (place.key, place.warp, place.weft);
             let index = match last {
                 Some((known, index)) if known == class => index,
-                _ => *known.classes.entry(class).or_insert_with(|| {
-                    known.cells.push([Sum::default(); CELLS * CELLS]);
-                    known.cells.len() as u32 - 1
-                }),
+                _ => self.class(class),
             };
             last = Some((class, index));
-            known.cells[index as usize][cell] += pixel;
+            self.cells[index as usize].1[cell] += pixel;
         }
-        known
+    }
+
+    /// Where the cells of a class lie.
+    fn class(&mut self, class: Class) -> u32 {
+        *self.classes.entry(class).or_insert_with(|| {
+            self.cells.push((class, [Sum::default(); CELLS * CELLS]));
+            self.cells.len() as u32 - 1
+        })
+    }
+
+    /// What another part of the picture tells as well.
+    fn add(&mut self, part: Self) {
+        for (class, sums) in part.cells {
+            let own = self.class(class) as usize;
+            for (sum, more) in self.cells[own].1.iter_mut().zip(sums) {
+                *sum += more;
+            }
+        }
+        let own = self.crossings.iter_mut().chain(&mut self.sides);
+        for (sum, more) in own.zip(part.crossings.iter().chain(&part.sides)) {
+            *sum += *more;
+        }
+        self.all += part.all;
     }
 
     fn reader(&self) -> Reader<'_> {
@@ -306,6 +370,11 @@ impl Known {
             last: None,
         }
     }
+}
+
+/// Pixels of a part of a picture.
+fn part_of(pixels: usize) -> usize {
+    pixels.div_ceil(PARTS).max(LEAST_PART)
 }
 
 fn side(place: &Place) -> usize {
@@ -332,7 +401,7 @@ impl Reader<'_> {
             _ => self.known.classes.get(&class).copied(),
         };
         self.last = Some((class, index));
-        let sum = self.known.cells[index? as usize][cell];
+        let sum = self.known.cells[index? as usize].1[cell];
         (sum.count >= ENOUGH).then(|| sum.sum.traced / sum.count)
     }
 

@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --bench levels` prints the time to build the exemplars of each level, and
 //! mean radiance and coverage of the cloth against level 0, six designs under four lights,
-//! with the correction and without it (`-- NAME` for some designs alone). `-- --fit DIR`
+//! with the correction and without it (`-- NAME` for some designs alone, `--spp N` for
+//! less noise, `--corrected` without the rows of averaging alone). `-- --fit DIR`
 //! measures the corrections, keeping what is measured in a folder, and prints the table;
 //! `-- --fit DIR --write` puts it in the place of `presets/levels.ron`. Nothing is
 //! asserted.
@@ -29,6 +30,7 @@ const DESIGNS: [&str; 6] = [
     "damask",
 ];
 const LIGHTS: [&str; 4] = ["day", "studio", "sun", "raking-left"];
+/// Samples a pixel where none are asked for.
 const SPP: u32 = 32;
 
 /// Mean radiance (over pixels and channels) and mean coverage of a picture.
@@ -52,7 +54,7 @@ struct Measured {
 }
 
 /// Makes a design at a level and looks at it under each light.
-fn measured(name: &str, level: u32, corrected: bool) -> Measured {
+fn measured(name: &str, level: u32, corrected: bool, spp: u32) -> Measured {
     let design = Arc::new(presets::design(name).expect("there").expect("sound"));
     let switch = if corrected { "on" } else { "off" };
     let request = StillRequest {
@@ -64,7 +66,7 @@ fn measured(name: &str, level: u32, corrected: bool) -> Measured {
             ("level-correction".to_owned(), switch.to_owned()),
         ],
         stop: Stop {
-            spp: Some(SPP),
+            spp: Some(spp),
             ..Stop::default()
         },
         ..StillRequest::default()
@@ -91,27 +93,30 @@ fn measured(name: &str, level: u32, corrected: bool) -> Measured {
 
 /// Prints what the levels of the chosen designs do to light. Small blocks have no voxels
 /// coarser than eight a side: there level 4 is level 3.
-fn compare(chosen: &[String]) {
-    println!("mean radiance against level 0 (and difference of coverage): {LIGHTS:?}");
+fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
+    println!("mean radiance against level 0 (and difference of coverage): {LIGHTS:?}, {spp} spp");
     let mut worst = [0.0f64; 2];
     for name in DESIGNS {
         if !chosen.is_empty() && !chosen.iter().any(|word| word == name) {
             continue;
         }
-        let fine = measured(name, 0, false);
+        let fine = measured(name, 0, false, spp);
         println!("{name:12} level 0  built in {:5.2} s", fine.seconds);
         let mut last = fine.block;
         for level in 1..=4 {
-            let coarse = measured(name, level, true);
+            let coarse = measured(name, level, true, spp);
             if coarse.block == last {
                 println!("{name:12} level {level} is level {}", level - 1);
                 continue;
             }
             last = coarse.block;
-            let both = [measured(name, level, false), coarse];
-            for (way, coarse) in ["averaged", "corrected"].into_iter().zip(&both) {
+            let mut both = vec![("corrected", coarse)];
+            if !corrected_alone {
+                both.insert(0, ("averaged", measured(name, level, false, spp)));
+            }
+            for (way, coarse) in &both {
                 let pairs = || fine.means.iter().zip(&coarse.means);
-                let worst = &mut worst[usize::from(way == "corrected")];
+                let worst = &mut worst[usize::from(*way == "corrected")];
                 for (f, c) in pairs() {
                     *worst = worst.max((c.0 / f.0 - 1.0).abs());
                 }
@@ -129,7 +134,10 @@ fn compare(chosen: &[String]) {
         }
     }
     let [before, after] = worst.map(|worst| 100.0 * worst);
-    println!("largest error: {before:.2} % averaged, {after:.2} % corrected");
+    if !corrected_alone {
+        println!("largest error of averaging: {before:.2} %");
+    }
+    println!("largest error: {after:.2} %");
 }
 
 fn main() {
@@ -147,9 +155,13 @@ fn main() {
             print!("{table}");
         }
     } else {
+        let spp = (words.iter().position(|word| word == "--spp"))
+            .and_then(|place| words.get(place + 1)?.parse().ok())
+            .unwrap_or(SPP);
+        let alone = words.iter().any(|word| word == "--corrected");
         let chosen: Vec<String> = (words.into_iter())
-            .filter(|word| !word.starts_with('-'))
+            .filter(|word| DESIGNS.contains(&word.as_str()))
             .collect();
-        compare(&chosen);
+        compare(&chosen, spp, alone);
     }
 }

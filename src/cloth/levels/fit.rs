@@ -18,12 +18,24 @@ use crate::job::{Cancelled, Job};
 use crate::render::path::Tally;
 use crate::render::{Arrival, Counters, Random, RenderSettings, Scatterer, Stack, Sun};
 
-/// Elevations of the lamps, degrees, and their azimuths round the cloth. The lamps of the
-/// last elevation stand straight across and along the yarns, where highlights are.
-pub(super) const ELEVATIONS: [f32; 6] = [12.0, 22.0, 40.0, 60.0, 85.0, 30.0];
+/// Elevations of the lamps, degrees, and where each starts its ring of [`AZIMUTHS`], as a
+/// share of a step: all round, straight across and along the yarns, where highlights are
+/// (30°), and half-way between, where the usual sun is (45°).
+pub(super) const RINGS: [(f32, f32); 10] = [
+    (12.0, 0.03),
+    (22.0, 0.23),
+    (40.0, 0.43),
+    (60.0, 0.63),
+    (85.0, 0.83),
+    (30.0, 0.0),
+    (45.0, 0.5),
+    (35.0, 0.67),
+    (52.0, 0.36),
+    (72.0, 0.2),
+];
 pub(super) const AZIMUTHS: usize = 4;
 /// Lamps of a measurement.
-pub const LAMPS: usize = ELEVATIONS.len() * AZIMUTHS;
+pub const LAMPS: usize = RINGS.len() * AZIMUTHS;
 /// Albedos for which light is summed.
 pub(super) const ALBEDOS: [f32; 4] = [0.5, 0.9, 0.98, 0.995];
 /// Light of higher order is left out, from both sides of the comparison.
@@ -101,15 +113,9 @@ impl Tally for Terms<'_> {
 /// The lamps: a white diffuser under any one of them has radiance 1.
 pub fn lamps() -> [Sun; LAMPS] {
     std::array::from_fn(|lamp| {
-        let elevation = ELEVATIONS[lamp / AZIMUTHS].to_radians();
-        // Every other elevation starts elsewhere, so that no two share an azimuth.
-        let row = lamp / AZIMUTHS;
-        let aside = if row + 1 < ELEVATIONS.len() {
-            0.03 + row as f32 / (ELEVATIONS.len() - 1) as f32
-        } else {
-            0.0
-        };
-        let part = aside + (lamp % AZIMUTHS) as f32;
+        let (elevation, start) = RINGS[lamp / AZIMUTHS];
+        let elevation = elevation.to_radians();
+        let part = start + (lamp % AZIMUTHS) as f32;
         let (sine, cosine) = (TAU * part / AZIMUTHS as f32).sin_cos();
         let (up, aside) = elevation.sin_cos();
         Sun {

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::render::{Arrival, PLACE};
 
 /// Terms of a gain's series.
-pub const TERMS: usize = 11;
+pub const TERMS: usize = 20;
 /// Kinds of places where light is scattered.
 pub const KINDS: usize = 18;
 /// Terms that each kind of place has a factor of its own for: the first ones.
@@ -15,8 +15,12 @@ pub const OWN: usize = 2;
 const OFTEN: f32 = 32.0;
 /// The lower yarn's kinds follow the upper one's.
 const LOWER: u32 = 9;
-/// Bits of a place: its kind, and from here on the hand of its twill line.
+/// Bits of a place: its kind, from here on the hand of its twill line, and from here on
+/// the number of the correction.
 const HAND: u32 = 5;
+const CORRECTION: u32 = 7;
+/// The number of no correction; those from here on have no bits.
+pub const UNCORRECTED: usize = 255;
 
 /// How the lower and the upper yarn of a block of this key stand, as bits of [`PLACE`].
 ///
@@ -38,6 +42,17 @@ pub fn places(key: u8) -> [u32; 2] {
     [LOWER, 0].map(|lower| ((kind + lower) | (hand << HAND)) << PLACE.trailing_zeros())
 }
 
+/// The number of a correction as bits of [`PLACE`].
+pub fn corrected(number: usize) -> u32 {
+    (number.min(UNCORRECTED) as u32) << (PLACE.trailing_zeros() + CORRECTION)
+}
+
+/// The number of the correction of optics that carry its bits.
+#[inline]
+pub fn correction(optics: u32) -> usize {
+    ((optics & PLACE) >> (PLACE.trailing_zeros() + CORRECTION)) as usize
+}
+
 /// The kind of place of an arrival, below [`KINDS`] in a corrected cloth.
 #[inline]
 pub fn kind(arrival: &Arrival) -> usize {
@@ -46,10 +61,10 @@ pub fn kind(arrival: &Arrival) -> usize {
 }
 
 /// The terms of the series at an arrival, each between −1 and 1: how often the light was
-/// scattered (two of them), how low it stands over the cloth, how far it comes along the fibre, how far
-/// the fibre is off a mirror's direction (½ where the half vector leans by α), on which
-/// side of a twill's lines the light stands, the fibre's slope, and how far the fibre's
-/// seen side faces the light.
+/// scattered (two of them), how low it stands over the cloth, how far it comes along the
+/// fibre, how far the fibre is off a mirror's direction (½ where the half vector leans by
+/// α), on which side of a twill's lines the light stands, the fibre's slope, how far the
+/// fibre's seen side faces the light, and where the light stands, all round.
 #[inline]
 pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
     let place = (arrival.optics & PLACE) >> PLACE.trailing_zeros();
@@ -60,6 +75,7 @@ pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
     let half = (eye + light).normalize_or(Vec3::Z);
     let lean = half.dot(fibre).powi(2);
     let off = lean / (lean + arrival.alpha * arrival.alpha).max(1e-6);
+    let aside = light.x * light.x - light.y * light.y;
     let seen = (eye - fibre * eye.dot(fibre)).normalize_or(Vec3::Z);
     [
         1.0,
@@ -73,12 +89,33 @@ pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
         hand * light.x * light.y,
         fibre.z * fibre.z,
         seen.dot(light),
+        aside,
+        aside * low,
+        aside * aside,
+        off * off,
+        light.x,
+        light.y,
+        light.x * low,
+        light.y * low,
+        light.x * light.y,
     ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_correction_is_named_beside_any_place_and_yarn() {
+        for number in [0, 1, 77, 254, 255, 1000] {
+            for place in places(0b11111) {
+                let optics = 9 | place | corrected(number);
+                assert_eq!(correction(optics), number.min(UNCORRECTED));
+                assert_eq!(optics & !PLACE, 9);
+                assert_eq!(optics & PLACE & !corrected(UNCORRECTED), place);
+            }
+        }
+    }
 
     fn place(key: u8, upper: bool) -> (u32, u32) {
         let bits = places(key)[usize::from(upper)] >> PLACE.trailing_zeros();
