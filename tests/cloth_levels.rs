@@ -44,16 +44,17 @@ fn shown(name: &str, level: u32, corrected: bool) -> [f64; 2] {
 
 #[test]
 fn coarse_levels_keep_light_and_coverage() {
-    // A shirting whose gaps are seen.
+    // A shirting whose gaps are seen. The picture's own noise is half a percent.
     let [light, cover] = shown("oxford", 0, true);
-    for (level, least_light, least_cover) in [(1, 0.008, 0.003), (2, 0.02, 0.008), (3, 0.03, 0.015)]
+    for (level, least_light, least_cover) in [(1, 0.012, 0.004), (2, 0.04, 0.008), (3, 0.06, 0.02)]
     {
         let off = |[coarse, covered]: [f64; 2]| [coarse / light - 1.0, covered - cover];
         let averaged = off(shown("oxford", level, false));
         let corrected = off(shown("oxford", level, true));
         println!("level {level}: averaged {averaged:.4?}, corrected {corrected:.4?}");
-        assert!(corrected[0].abs() < 0.03, "{corrected:?}");
-        assert!(corrected[1].abs() < 0.01, "{corrected:?}");
+        assert!(corrected[0].abs() < 0.028, "{corrected:?}");
+        assert!(corrected[0].abs() < 0.3 * averaged[0], "level {level}");
+        assert!(corrected[1].abs() < 0.006, "{corrected:?}");
         assert!(
             averaged[0] > least_light && averaged[1] > least_cover,
             "{averaged:?}"

@@ -187,9 +187,13 @@ pub fn table(kept: &Path) -> String {
                 100.0 * residual.after
             );
         }
+        let sizes = (row.sizes.iter_mut())
+            .flat_map(|sizes| sizes.diameters_mm.iter_mut().chain(&mut sizes.pitch_mm));
         let factors = row.gain.iter_mut().flatten();
-        for factor in factors.chain(row.kinds.iter_mut().flatten().flatten()) {
-            *factor = (*factor * 1e3).round() / 1e3;
+        let factors = factors.chain(row.kinds.iter_mut().flatten().flatten());
+        let rest = [&mut row.ratio, &mut row.thin, &mut row.spread];
+        for number in sizes.chain(factors).chain(rest) {
+            *number = (*number * 1e4).round() / 1e4;
         }
         text += &format!("    {},\n", ron::to_string(&row).expect("a row"));
     }
