@@ -27,6 +27,9 @@ const CELLS: usize = 4;
 const ENOUGH: f32 = 3.0;
 /// Pixels whose worth a coarser statistic has beside a finer one.
 const PRIOR: f32 = 12.0;
+/// First sight shows more of a yarn through the one above it than tracing does: so much of
+/// a change of the lower yarn's colour is believed.
+const THROUGH: f32 = 0.5;
 /// Parts that a picture is learnt from at once, and the fewest pixels of one: whatever the
 /// number of threads, so that sums have the same bits.
 const PARTS: usize = 8;
@@ -87,6 +90,8 @@ pub struct Sighted {
     pub rgba: Vec<u8>,
     pub(super) places: Vec<Place>,
     pub(super) yarns: Vec<Yarn>,
+    /// Whether the back is seen.
+    pub(super) back: bool,
     /// The pairs of yarns that the places name by their number.
     pub(super) pairs: Vec<Pair>,
 }
@@ -135,20 +140,25 @@ impl Sighted {
                 place.set = sets
                     .get(usize::from(place.set))
                     .map_or(u16::MAX, |&set| set);
-                let seen = light.of(&after.rgba[range.clone()]);
+                let mut seen = light.of(&after.rgba[range.clone()]);
                 let same_yarns = is_kept(place.warp) && is_kept(place.weft);
                 let mean = same_yarns.then(|| known.mean(&place)).flatten();
                 let shown = mean.unwrap_or_else(|| {
                     // The same crossing in other colours keeps its fibres.
                     let own =
                         (before.key, before.cell, before.set) == (place.key, place.cell, place.set);
-                    let known = match own {
-                        true => Traced {
-                            traced: light.of(&traced[range.clone()]),
-                            sight: light.of(&self.rgba[range]),
-                        },
-                        false => known.traced(&place),
+                    if !own {
+                        return known.traced(&place).carry(seen);
+                    }
+                    let known = Traced {
+                        traced: light.of(&traced[range.clone()]),
+                        sight: light.of(&self.rgba[range]),
                     };
+                    let warp_up = (place.key & 1 == 1) != after.back;
+                    let upper = if warp_up { place.warp } else { place.weft };
+                    if place.cell_index().is_some() && is_kept(upper) {
+                        seen = known.sight.lerp(seen, THROUGH);
+                    }
                     known.carry(seen)
                 });
                 light.put(shown, pixel);
@@ -435,6 +445,7 @@ mod tests {
                 })
                 .collect(),
             yarns: vec![Yarn::new("yarn", Family::Cotton, colour)],
+            back: false,
             pairs: vec![Pair {
                 warp: YarnRecipe::family(Family::Cotton, 0.3),
                 weft: YarnRecipe::family(Family::Cotton, 0.3),
@@ -486,6 +497,29 @@ mod tests {
                 .chunks(4)
                 .all(|pixel| pixel[1].abs_diff(188) < 2)
         );
+    }
+
+    #[test]
+    fn a_new_colour_shines_little_through_the_yarn_above_it() {
+        // The weft, yarn 1, is recoloured; first sight makes all of it red.
+        let sight = |key: u8, colour: Srgb, seen: [u8; 4]| {
+            let mut sight = sighted(&[(key, 0, seen); 30], Srgb(200, 200, 200));
+            sight.yarns.push(Yarn::new("weft", Family::Cotton, colour));
+            for place in &mut sight.places {
+                place.weft = YarnId(1);
+            }
+            sight
+        };
+        let traced = [188, 188, 188, 255].repeat(30);
+        let green = |key: u8, back: bool| {
+            let before = sight(key, Srgb(200, 200, 200), [200, 200, 200, 255]);
+            let mut after = sight(key, Srgb(200, 0, 0), [200, 100, 100, 255]);
+            after.back = back;
+            before.carried_to(&after, &traced).unwrap().rgba[1]
+        };
+        // Key 1: the warp is up.
+        assert!(green(1, false) > green(0, false) + 20);
+        assert_eq!(green(1, true), green(0, false));
     }
 
     #[test]

@@ -193,6 +193,7 @@ impl FirstSight {
             places,
             pairs: sight.classes.pairs.clone(),
             yarns: design.yarns().to_vec(),
+            back: request.view.turns_over(),
         })
     }
 

@@ -137,6 +137,12 @@ impl Preview {
         };
     }
 
+    /// Whether a sheet is open and all its cloths are drawn.
+    #[cfg(test)]
+    pub fn sheet_is_drawn(&self) -> bool {
+        self.sheet.as_ref().is_some_and(Sheet::is_drawn)
+    }
+
     /// How the colourways are shown, if they are.
     pub fn sheet_kind(&self) -> Option<SheetKind> {
         self.sheet.as_ref().map(|sheet| sheet.kind)

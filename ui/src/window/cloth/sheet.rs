@@ -69,6 +69,12 @@ impl Sheet {
         }
     }
 
+    /// Whether every colourway has its picture.
+    #[cfg(test)]
+    pub fn is_drawn(&self) -> bool {
+        !self.textures.is_empty() && self.textures.iter().all(Option::is_some)
+    }
+
     /// Shows the sheet; `still` says from where and in which light. False once it is closed.
     pub fn show(
         &mut self,

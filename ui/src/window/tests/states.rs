@@ -158,6 +158,9 @@ const STATES: [(&str, Option<&str>, Way); 28] = [
     ("contact sheet", Some("herringbone"), |window, _| {
         window.state_mut().preview.pause();
         obey(window, Command::ContactSheet);
+        wait_for(window, "the colourways", |window| {
+            window.state().preview.sheet_is_drawn()
+        });
     }),
 ];
 
