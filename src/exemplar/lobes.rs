@@ -61,7 +61,7 @@ impl Lobes {
         (first, Self { turn, lean, unused })
     }
 
-    /// A direction about the axis `first`, chosen by [`bits_of`] a uniform number. The
+    /// A direction about the axis `first`, chosen by `bits_of` a uniform number. The
     /// fibres lean `spread` times as far as they do; 1 is as they are.
     pub fn direction(self, first: Vec3, bits: u32, spread: f32) -> Vec3 {
         if self.lean == [0, 0] {
