@@ -220,14 +220,6 @@ impl Posterise {
                 // Dithering is made of specks.
                 settings.speck = 0;
             }
-            // In one piece, so that a narrow pane does not part word and number.
-            let field = DragValue::new(&mut settings.speck)
-                .range(0..=500)
-                .prefix("merge specks under ")
-                .suffix(" crossings");
-            let name = "Merge specks under so many crossings";
-            ui.add(field)
-                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
             ui.checkbox(&mut settings.preview_only, "own yarns for each colour");
         });
         ui.horizontal_wrapped(|ui| {
@@ -258,6 +250,14 @@ impl Posterise {
                 // The picks follow from the picture's shape and the sett.
                 settings.picks = None;
             }
+            // In one piece, so that a narrow pane does not part word and number.
+            let field = DragValue::new(&mut settings.speck)
+                .range(0..=500)
+                .prefix("merge specks under ")
+                .suffix(" crossings");
+            let name = "Merge specks under so many crossings";
+            ui.add(field)
+                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
         });
     }
 
