@@ -12,7 +12,9 @@ use pickglass::design::{
     Design, Family, Fill, Grid, Region, Regions, Srgb, Structure, Yarn, YarnId, YarnMaps,
     usual_sett,
 };
+use pickglass::edit::recovery::{Recovery, Saved};
 use pickglass::edit::{Document, Edit, HISTORY_BYTES, Surface, shapes};
+use pickglass::formats::{self, LoadOptions, SaveOptions};
 use pickglass::hash::mix;
 
 const ENDS: u32 = 5120;
@@ -89,6 +91,30 @@ fn stroke(document: &Document, number: usize) -> Edit {
     }
 }
 
+/// Saves the design as the window does, keeps it in a recovery copy too, and prints how
+/// long each took; what is read back is what was saved.
+fn save_and_read(document: &Document) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("panel.ron");
+    let design = document.design();
+    let clock = Instant::now();
+    formats::save(design, &path, &SaveOptions::default()).unwrap();
+    let saved = clock.elapsed().as_secs_f64();
+    let bytes = std::fs::metadata(&path).unwrap().len();
+    let clock = Instant::now();
+    let read = formats::load(&path, &LoadOptions::default()).unwrap();
+    println!(
+        "saved in {saved:.3} s ({bytes} bytes), read in {:.3} s",
+        clock.elapsed().as_secs_f64()
+    );
+    assert!(read.design == **design);
+    let mut recovery = Recovery::begin(folder.path()).unwrap();
+    let clock = Instant::now();
+    let kept = recovery.save(design, Some(&path)).unwrap();
+    println!("kept in {:.3} s", clock.elapsed().as_secs_f64());
+    assert!(matches!(kept, Saved::Whole { .. }));
+}
+
 #[test]
 fn a_thousand_strokes_are_undone_and_redone() {
     let mut document = Document::new(design());
@@ -131,10 +157,12 @@ fn a_thousand_strokes_are_undone_and_redone() {
         assert_eq!(fingerprint(&document), *print);
     }
     assert!(document.redo().is_none());
+    let peak = memory::peak();
+    save_and_read(&document);
     // Different states have different fingerprints: the comparison can fail.
     let different: std::collections::BTreeSet<u64> = prints.iter().copied().collect();
     assert!(different.len() > prints.len() * 9 / 10);
-    let (Some(before), Some(peak)) = (before, memory::peak()) else {
+    let (Some(before), Some(peak)) = (before, peak) else {
         println!("not measured: this system does not say how much memory is in use");
         return;
     };
