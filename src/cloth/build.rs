@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::levels::{LevelCorrection, Matter, series};
+use super::levels::{Gain, LevelCorrection, Matter, series};
 use super::window::Window;
 use crate::design::{
     Design, Family, Lattice, Positions, WeavePattern, Yarn, YarnId, YarnMap, YarnMaps,
@@ -131,32 +131,39 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
-/// How the voxels of each set's warp and weft are read, and the corrections of their light:
-/// each once, by the number that the voxels name.
+/// How the voxels of each set's warp and weft are read, and the gains of their light: each
+/// pair once, by the number that the voxels name.
 fn matter(
     sets: &[Arc<ExemplarSet>],
     of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
-) -> (Arc<[[Matter; 2]]>, Vec<LevelCorrection>) {
-    let mut corrections: Vec<LevelCorrection> = Vec::new();
+) -> (Arc<[[Matter; 2]]>, Vec<[Gain; 2]>) {
+    let mut gains: Vec<[Gain; 2]> = Vec::new();
     let matter = (sets.iter())
         .map(|set| {
-            [&set.pair.warp, &set.pair.weft].map(|recipe| {
-                let correction = of(recipe.family, set);
-                let number = match &correction {
-                    Some(own) => (corrections.iter().position(|known| known == own))
-                        .unwrap_or_else(|| {
-                            corrections.push(own.clone());
-                            corrections.len() - 1
-                        }),
-                    None => series::UNCORRECTED,
-                };
-                let corrected = series::corrected(number);
-                Matter::new(recipe.full_extinction(), correction.as_ref(), corrected)
+            let recipes = [&set.pair.warp, &set.pair.weft];
+            let found = recipes.map(|recipe| of(recipe.family, set));
+            let pair = [0, 1].map(|yarn| {
+                let own = found[yarn].as_ref().map(|found| found.gains[yarn].clone());
+                own.unwrap_or(Gain::NONE)
+            });
+            let number = if pair == [Gain::NONE; 2] {
+                series::UNCORRECTED
+            } else {
+                let known = gains.iter().position(|known| *known == pair);
+                known.unwrap_or_else(|| {
+                    gains.push(pair);
+                    gains.len() - 1
+                })
+            };
+            [0, 1].map(|yarn| {
+                let corrected = series::corrected(number, yarn);
+                let full = recipes[yarn].full_extinction();
+                Matter::new(full, found[yarn].as_ref(), corrected)
             })
         })
         .collect();
-    corrections.truncate(series::UNCORRECTED);
-    (matter, corrections)
+    gains.truncate(series::UNCORRECTED);
+    (matter, gains)
 }
 
 /// SGGX roughness of a yarn's fibres.
@@ -197,10 +204,11 @@ pub struct ClothVolume {
     pub(super) grid: VoxelGrid,
     /// How voxels are read, by set: warp, weft.
     pub(super) matter: Arc<[[Matter; 2]]>,
-    /// How each block's lower and upper yarn stand, see [`series::places`]; empty at level 0.
+    /// How each block's lower and upper yarn stand, see [`series::places`]; empty where
+    /// levels are not corrected.
     pub(super) places: Vec<[u32; 2]>,
-    /// What corrects the light, by the number that voxels name; empty at level 0.
-    pub(super) corrections: Vec<LevelCorrection>,
+    /// What corrects the light of warp and weft, by the number that voxels name.
+    pub(super) gains: Vec<[Gain; 2]>,
     /// SGGX roughness by yarn.
     pub(super) alpha: Vec<f32>,
     /// Single-scattering albedo by yarn.
@@ -290,16 +298,14 @@ impl ClothVolume {
         let SynthesisSettings { seed, patch, .. } = settings.synthesis;
         let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
         let grid = sets.first().map_or_else(VoxelGrid::default, |set| set.grid);
-        let (matter, corrections) = matter(&sets, |family, set| {
+        let (matter, gains) = matter(&sets, |family, set| {
             (settings.correct_levels).then(|| LevelCorrection::of(family, set))?
         });
-        let places = if corrections.is_empty() {
-            Vec::new()
-        } else {
-            (0..catalogue.blocks() as u16)
-                .map(|block| series::places(catalogue.key(block)))
-                .collect()
-        };
+        let corrected = settings.correct_levels && grid.level > 0;
+        let places = (0..catalogue.blocks() as u16)
+            .filter(|_| corrected)
+            .map(|block| series::places(catalogue.key(block)))
+            .collect();
         Ok(Self {
             grid,
             catalogue,
@@ -315,7 +321,7 @@ impl ClothVolume {
             picks: design.pick_positions(),
             matter,
             places,
-            corrections,
+            gains,
             alpha: design.yarns().iter().map(roughness).collect(),
             albedo,
             settings,
@@ -386,7 +392,7 @@ impl ClothVolume {
         of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
     ) -> Self {
         if self.grid.level > 0 {
-            (self.matter, self.corrections) = matter(&self.sets, of);
+            (self.matter, self.gains) = matter(&self.sets, of);
         }
         self
     }

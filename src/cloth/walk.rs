@@ -90,8 +90,8 @@ impl Medium for ClothVolume {
 
     #[inline]
     fn gain(&self, arrival: &Arrival) -> f32 {
-        (self.corrections.get(series::correction(arrival.optics)))
-            .map_or(1.0, |correction| correction.gain(arrival))
+        let (number, yarn) = series::correction(arrival.optics);
+        (self.gains.get(number)).map_or(1.0, |gains| gains[yarn].at(arrival))
     }
 }
 

@@ -67,6 +67,9 @@ pub struct Voxel {
 
 /// The bits of a voxel's optics that do not name the optics.
 pub const PLACE: u32 = 0x7fff_0000;
+/// The bit of them that says to which of two systems of yarns, warp or weft, a voxel
+/// belongs.
+pub const SYSTEM: u32 = 0x0080_0000;
 
 impl Voxel {
     /// Empty space.
@@ -118,6 +121,8 @@ pub trait Medium: Sync {
 pub struct Arrival {
     /// How often the light was scattered.
     pub order: u32,
+    /// Whether voxels of both systems scattered it (see [`SYSTEM`]).
+    pub mixed: bool,
     /// Optics id of the voxel that scattered it last (first, as the light goes).
     pub optics: u32,
     /// Its fibre, unit.

@@ -33,7 +33,7 @@ pub use environment::{Dark, Dome, Environment, EnvironmentImage, luminance};
 pub use error::{ErrorEstimate, estimate};
 pub use film::{Film, FirstHit, Pixel, Sample};
 pub use light::{LightError, LightRig, PRESET_NAMES, Sky, Sun};
-pub use medium::{Arrival, Bounds, MajorantWalk, Medium, PLACE, Ray, Stretch, Voxel};
+pub use medium::{Arrival, Bounds, MajorantWalk, Medium, PLACE, Ray, SYSTEM, Stretch, Voxel};
 pub use orders::{OrderHistogram, order_histogram};
 pub use random::Random;
 pub use settings::{Background, Backing, RenderSettings};

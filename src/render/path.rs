@@ -12,7 +12,7 @@ use super::counters::Counters;
 use super::environment::{Environment, luminance};
 use super::film::{FirstHit, Sample};
 use super::light::Sun;
-use super::medium::{Arrival, PLACE, Ray};
+use super::medium::{Arrival, PLACE, Ray, SYSTEM};
 use super::random::Random;
 use super::settings::Background;
 use super::track::{SECOND, Scatterer};
@@ -120,7 +120,8 @@ pub struct Path<'s, S, E, const SHADOWS: bool, const PLANE: bool> {
 /// What scatters light at a vertex of a path.
 #[derive(Clone, Copy)]
 enum Vertex {
-    Fibre(super::sggx::Fibre, u32),
+    /// A fibre, its optics, and whether the path has met both systems of yarns.
+    Fibre(super::sggx::Fibre, u32, bool),
     Sheet(f32),
 }
 
@@ -129,7 +130,7 @@ impl Vertex {
     #[inline]
     fn value(&self, wi: Vec3, wo: Vec3) -> f32 {
         match self {
-            Self::Fibre(fibre, _) => fibre.phase(wi, wo),
+            Self::Fibre(fibre, ..) => fibre.phase(wi, wo),
             Self::Sheet(facing) => (wo.z * facing).max(0.0) / PI,
         }
     }
@@ -145,9 +146,10 @@ impl Vertex {
         tally: &mut T,
     ) {
         match *self {
-            Self::Fibre(fibre, optics) => {
+            Self::Fibre(fibre, optics, mixed) => {
                 let arrival = Arrival {
                     order,
+                    mixed,
                     optics,
                     fibre: fibre.direction,
                     alpha: fibre.alpha,
@@ -164,7 +166,7 @@ impl Vertex {
     #[inline]
     fn sample(&self, wi: Vec3, u: [f32; 2]) -> Vec3 {
         match self {
-            Self::Fibre(fibre, _) => fibre.sample(wi, u),
+            Self::Fibre(fibre, ..) => fibre.sample(wi, u),
             Self::Sheet(facing) => {
                 let (x, y) = super::random::disk(u);
                 let z = (1.0 - x * x - y * y).max(1e-6).sqrt();
@@ -192,6 +194,8 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
         let mut order = 0u32;
         // Density with which the present direction was drawn; infinite for the camera's.
         let mut density = f32::INFINITY;
+        // The system of yarns that scattered first, and whether another has since.
+        let (mut system, mut mixed) = (None, false);
         // What scattered last, and from where it was come upon.
         let mut last: Option<(Vertex, Vec3)> = None;
         loop {
@@ -208,9 +212,11 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                         sample.first = Some(first_hit(&ray, &hit, albedo));
                     }
                     throughput *= albedo;
+                    let of = hit.voxel.optics & SYSTEM;
+                    mixed |= *system.get_or_insert(of) != of;
                     (
                         ray.at(hit.t),
-                        Vertex::Fibre(hit.voxel.fibre(), hit.voxel.optics),
+                        Vertex::Fibre(hit.voxel.fibre(), hit.voxel.optics, mixed),
                     )
                 }
                 None if sheet < f32::INFINITY => {

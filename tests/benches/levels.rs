@@ -8,8 +8,8 @@
 //! `-- --fit DIR --write` puts it in the place of `presets/levels.ron`. Nothing is
 //! asserted.
 
-#[path = "levels_fit.rs"]
-mod levels_fit;
+#[path = "levels/fit.rs"]
+mod fit;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -147,7 +147,7 @@ fn main() {
         let kept = words
             .get(place + 1)
             .map_or("levels-measured", String::as_str);
-        let table = levels_fit::table(Path::new(kept));
+        let table = fit::table(Path::new(kept));
         if words.iter().any(|word| word == "--write") {
             let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/levels.ron");
             atomic::write(&preset, table.as_bytes()).expect("the preset is written");

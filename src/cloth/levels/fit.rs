@@ -16,7 +16,7 @@ use crate::cloth::ClothVolume;
 use crate::cloth::colour::{first_ray, path_to};
 use crate::job::{Cancelled, Job};
 use crate::render::path::Tally;
-use crate::render::{Arrival, Counters, Random, RenderSettings, Scatterer, Stack, Sun};
+use crate::render::{Arrival, Counters, PLACE, Random, RenderSettings, Scatterer, Stack, Sun};
 
 /// Elevations of the lamps, degrees, and where each starts its ring of [`AZIMUTHS`], as a
 /// share of a step: all round, straight across and along the yarns, where highlights are
@@ -36,20 +36,36 @@ pub(super) const RINGS: [(f32, f32); 10] = [
 pub(super) const AZIMUTHS: usize = 4;
 /// Lamps of a measurement.
 pub const LAMPS: usize = RINGS.len() * AZIMUTHS;
-/// Albedos for which light is summed.
-pub(super) const ALBEDOS: [f32; 4] = [0.5, 0.9, 0.98, 0.995];
+/// Albedos of warp and weft for which light is summed: dark, pale, and either of them dark.
+pub(super) const ALBEDOS: [[f32; 2]; 8] = [
+    [0.5, 0.5],
+    [0.9, 0.9],
+    [0.98, 0.98],
+    [0.995, 0.995],
+    [0.4, 0.98],
+    [0.98, 0.4],
+    [0.8, 0.995],
+    [0.995, 0.8],
+];
+/// By how much a path is marked each time that the warp scatters it: few enough to be told
+/// apart by their number up to [`MOST_ORDERS`].
+const MARK: f32 = 0.98;
 /// Light of higher order is left out, from both sides of the comparison.
 const MOST_ORDERS: u32 = 192;
 /// Paths that follow light scattered once, for each that follows all.
 const ONCE: u32 = 3;
-/// Starts of paths along a side of the square that one task follows.
+/// Starts of paths along a side of a square that is followed at once.
 const ROW: u32 = 16;
+/// Tasks of a measurement: each follows every so many squares.
+const TASKS: u32 = 16;
 /// Light below which shadow rays play roulette.
 const SHADOW_ROULETTE: f32 = 0.1;
-/// Numbers of a lamp and albedo: of each kind of place and order (once, more), by term.
-pub(super) const EACH: usize = KINDS * 2 * TERMS;
+/// Numbers of a lamp and a pair of albedos: of the last yarn (warp, weft), the kind of
+/// place and the order (once, more), by term.
+pub(super) const EACH: usize = 2 * KINDS * 2 * TERMS;
 
-/// Mean light by lamp, albedo, kind of place, order (once, more often) and term.
+/// Mean light by lamp, pair of albedos, last yarn, kind of place, order (once, more often)
+/// and term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light(Vec<f64>);
 
@@ -68,22 +84,26 @@ impl Light {
         (values.len() == LAMPS * ALBEDOS.len() * EACH).then_some(Self(values))
     }
 
-    /// The numbers of each lamp and albedo; see [`EACH`].
+    /// The numbers of each lamp and pair of albedos; see [`EACH`].
     pub(super) fn each(&self) -> impl Iterator<Item = &[f64]> {
         self.0.chunks_exact(EACH)
     }
 }
 
-/// Sums by lamp, which it knows by the light's direction.
+/// Sums by lamp, which it knows by the light's direction. A path's first channel is its
+/// light, the second is marked by the warp.
 struct Terms<'l> {
     suns: &'l [Sun],
+    /// Yarns below are the warp's.
+    warps: u32,
     sums: Light,
 }
 
 impl Tally for Terms<'_> {
     #[inline]
-    fn albedo<S: Scatterer>(&self, _: &S, _: u32) -> Vec3 {
-        Vec3::ONE
+    fn albedo<S: Scatterer>(&self, _: &S, optics: u32) -> Vec3 {
+        let warp = optics & !PLACE < self.warps;
+        Vec3::new(1.0, if warp { MARK } else { 1.0 }, 1.0)
     }
 
     fn add(&mut self, _: u32, _: Vec3) {}
@@ -94,14 +114,18 @@ impl Tally for Terms<'_> {
             return;
         };
         let (kind, terms) = (kind(arrival).min(KINDS - 1), terms(arrival));
-        let first = (kind * 2 + usize::from(arrival.order > 1)) * TERMS;
+        let yarn = usize::from(arrival.optics & !PLACE >= self.warps);
+        let first = ((yarn * KINDS + kind) * 2 + usize::from(arrival.order > 1)) * TERMS;
         let share = if arrival.order > 1 {
             1.0
         } else {
             1.0 / ONCE as f32
         };
-        for (k, albedo) in ALBEDOS.iter().enumerate() {
-            let light = light.x * share * albedo.powi(arrival.order as i32);
+        let order = arrival.order as i32;
+        let by_warp = ((light.y / light.x).ln() / MARK.ln()).round() as i32;
+        let by_warp = by_warp.clamp(0, order);
+        for (k, [warp, weft]) in ALBEDOS.iter().enumerate() {
+            let light = light.x * share * warp.powi(by_warp) * weft.powi(order - by_warp);
             let sums = &mut self.sums.0[(lamp * ALBEDOS.len() + k) * EACH + first..][..TERMS];
             for (sum, term) in sums.iter_mut().zip(terms) {
                 *sum += f64::from(light * term);
@@ -126,41 +150,45 @@ pub fn lamps() -> [Sun; LAMPS] {
     })
 }
 
-/// Measures the light of a single layer of cloth seen from above. Its own colours do not
-/// matter.
+/// Measures the light of a single layer of cloth seen from above, whose yarns below `warps`
+/// are the warp's and whose others are the weft's. Its own colours do not matter.
 ///
 /// # Errors
 /// [`Cancelled`] when the job was.
-pub fn measure(cloth: &ClothVolume, paths: u32, job: &Job) -> Result<Light, Cancelled> {
+pub fn measure(cloth: &ClothVolume, warps: u32, paths: u32, job: &Job) -> Result<Light, Cancelled> {
     let slide = RenderSettings::default().backing_slide_mm;
     let stack = Stack::new(cloth, 1, slide.into());
     let suns = lamps();
     let roulette = SHADOW_ROULETTE * LAMPS as f32;
     let long = path_to(&suns, &stack, MOST_ORDERS, roulette);
     let short = path_to(&suns, &stack, 1, 0.3 * roulette);
-    let batches: Vec<Light> = (0..paths.div_ceil(ROW * ROW).max(2))
+    let squares = paths.div_ceil(ROW * ROW).max(2);
+    let parts: Vec<Light> = (0..TASKS)
         .into_par_iter()
-        .map(|batch| {
-            job.check()?;
+        .map(|task| {
             let mut tally = Terms {
                 suns: &suns,
+                warps,
                 sums: Light::dark(),
             };
             let mut counters = Counters::default();
-            for index in 0..ROW * ROW {
-                let mut random = Random::new(11, u64::from(batch), u64::from(index));
-                for once in 0..ONCE {
-                    let path = if once == 0 { &long } else { &short };
-                    let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
-                    path.trace(ray, &mut tally, &mut random, &mut counters);
+            for square in (task..squares).step_by(TASKS as usize) {
+                job.check()?;
+                for index in 0..ROW * ROW {
+                    let mut random = Random::new(11, u64::from(square), u64::from(index));
+                    for once in 0..ONCE {
+                        let path = if once == 0 { &long } else { &short };
+                        let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
+                        path.trace(ray, &mut tally, &mut random, &mut counters);
+                    }
                 }
             }
             Ok(tally.sums)
         })
         .collect::<Result<_, Cancelled>>()?;
-    let paths = (batches.len() as u32 * ROW * ROW) as f64;
+    let paths = f64::from(squares * ROW * ROW);
     let mut mean = Light::dark();
-    for part in &batches {
+    for part in &parts {
         for (sum, more) in mean.0.iter_mut().zip(&part.0) {
             *sum += more / paths;
         }
@@ -207,8 +235,59 @@ pub fn transmittance(cloth: &ClothVolume, rays: u32, job: &Job) -> Result<f64, C
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::exemplar::ExemplarStore;
+    use crate::formats::presets;
+    use crate::still::{self, StillRequest};
+
+    #[test]
+    fn warp_and_weft_are_told_apart_in_light_scattered_by_both() {
+        let design = Arc::new(presets::design("linen-plain").unwrap().unwrap());
+        let request = StillRequest {
+            width: 16,
+            height: 16,
+            width_mm: Some(1.0),
+            dials: vec![("level".to_owned(), "3".to_owned())],
+            ..StillRequest::default()
+        };
+        let prepared =
+            still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+        let of = |warps| measure(prepared.cloth(), warps, 512, &Job::new()).unwrap();
+        // Light by pair of albedos, last yarn and order, over all lamps and kinds.
+        let sums = |light: &Light| {
+            let mut sums = vec![[[0.0; 2]; 2]; ALBEDOS.len()];
+            for (index, each) in light.each().enumerate() {
+                for (place, terms) in each.chunks_exact(TERMS).enumerate() {
+                    let (yarn, order) = (place / 2 / KINDS, place % 2);
+                    sums[index % ALBEDOS.len()][yarn][order] += terms[0];
+                }
+            }
+            sums
+        };
+        let [none, both, all] = [0, 1, 2].map(|warps| sums(&of(warps)));
+        // Pairs 2, 4 and 5: both pale, dark warp, dark weft.
+        assert_eq!(none[2][1], none[4][1]);
+        assert_eq!(all[2][0], all[5][0]);
+        assert_eq!((none[2][0], all[2][1]), ([0.0; 2], [0.0; 2]));
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-3;
+        for (dark, yarn) in [(4, 0), (5, 1)] {
+            let [own, other] = [yarn, 1 - yarn].map(|yarn| (both[dark][yarn], both[2][yarn]));
+            assert!(near(own.0[0], own.1[0] * 0.4 / 0.98), "{own:?}");
+            assert!(near(other.0[0], other.1[0]), "{other:?}");
+            // Light scattered more often was by both, more often by its last.
+            assert!(own.0[1] < 0.4 * own.1[1], "{own:?}");
+            assert!(
+                (0.3..0.95).contains(&(other.0[1] / other.1[1])),
+                "{other:?}"
+            );
+        }
+        let [once, more] = [0, 1].map(|order| both[2][0][order] + both[2][1][order]);
+        assert!((once / none[2][1][0] - 1.0).abs() < 0.03 && more > 0.0);
+    }
 
     #[test]
     fn lamps_stand_all_round() {

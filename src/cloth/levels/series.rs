@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::render::{Arrival, PLACE};
+use crate::render::{Arrival, PLACE, SYSTEM};
 
 /// Terms of a gain's series.
-pub const TERMS: usize = 20;
+pub const TERMS: usize = 22;
 /// Kinds of places where light is scattered.
 pub const KINDS: usize = 18;
 /// Terms that each kind of place has a factor of its own for: the first ones.
@@ -15,12 +15,12 @@ pub const OWN: usize = 2;
 const OFTEN: f32 = 32.0;
 /// The lower yarn's kinds follow the upper one's.
 const LOWER: u32 = 9;
-/// Bits of a place: its kind, from here on the hand of its twill line, and from here on
-/// the number of the correction.
+/// Bits of a place: its kind, from here on the hand of its twill line, then [`SYSTEM`], and
+/// from here on the number of the gains.
 const HAND: u32 = 5;
-const CORRECTION: u32 = 7;
-/// The number of no correction; those from here on have no bits.
-pub const UNCORRECTED: usize = 255;
+const GAINS: u32 = 8;
+/// The number of no gains; those from here on have no bits.
+pub const UNCORRECTED: usize = 127;
 
 /// How the lower and the upper yarn of a block of this key stand, as bits of [`PLACE`].
 ///
@@ -42,15 +42,17 @@ pub fn places(key: u8) -> [u32; 2] {
     [LOWER, 0].map(|lower| ((kind + lower) | (hand << HAND)) << PLACE.trailing_zeros())
 }
 
-/// The number of a correction as bits of [`PLACE`].
-pub fn corrected(number: usize) -> u32 {
-    (number.min(UNCORRECTED) as u32) << (PLACE.trailing_zeros() + CORRECTION)
+/// The number of the gains of a yarn in the warp (0) or the weft (1) as bits of [`PLACE`].
+pub fn corrected(number: usize, yarn: usize) -> u32 {
+    let number = (number.min(UNCORRECTED) as u32) << (PLACE.trailing_zeros() + GAINS);
+    number | (SYSTEM * u32::from(yarn > 0))
 }
 
-/// The number of the correction of optics that carry its bits.
+/// The number of the gains of optics that carry its bits, and warp (0) or weft (1).
 #[inline]
-pub fn correction(optics: u32) -> usize {
-    ((optics & PLACE) >> (PLACE.trailing_zeros() + CORRECTION)) as usize
+pub fn correction(optics: u32) -> (usize, usize) {
+    let number = (optics & PLACE) >> (PLACE.trailing_zeros() + GAINS);
+    (number as usize, usize::from(optics & SYSTEM != 0))
 }
 
 /// The kind of place of an arrival, below [`KINDS`] in a corrected cloth.
@@ -61,16 +63,18 @@ pub fn kind(arrival: &Arrival) -> usize {
 }
 
 /// The terms of the series at an arrival, each between −1 and 1: how often the light was
-/// scattered (two of them), how low it stands over the cloth, how far it comes along the
-/// fibre, how far the fibre is off a mirror's direction (½ where the half vector leans by
-/// α), on which side of a twill's lines the light stands, the fibre's slope, how far the
-/// fibre's seen side faces the light, and where the light stands, all round.
+/// scattered (two of them), whether by both systems of yarns and how often then, how low it
+/// stands over the cloth, how far it comes along the fibre, how far the fibre is off a
+/// mirror's direction (½ where the half vector leans by α), on which side of a twill's
+/// lines the light stands, the fibre's slope, how far the fibre's seen side faces the
+/// light, and where the light stands, all round.
 #[inline]
 pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
     let place = (arrival.optics & PLACE) >> PLACE.trailing_zeros();
     let hand = [0.0, -1.0, 1.0, 0.0][(place >> HAND & 3) as usize];
     let (light, eye, fibre) = (arrival.to_light, arrival.to_eye, arrival.fibre);
     let order = arrival.order.max(1) as f32;
+    let mixed = f32::from(u8::from(arrival.mixed));
     let low = 1.0 - light.z.abs().min(1.0);
     let half = (eye + light).normalize_or(Vec3::Z);
     let lean = half.dot(fibre).powi(2);
@@ -81,6 +85,8 @@ pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
         1.0,
         1.0 / order,
         order / (order + OFTEN),
+        mixed,
+        mixed / order,
         low,
         low * low,
         light.dot(fibre).powi(2),
@@ -107,12 +113,12 @@ mod tests {
 
     #[test]
     fn a_correction_is_named_beside_any_place_and_yarn() {
-        for number in [0, 1, 77, 254, 255, 1000] {
-            for place in places(0b11111) {
-                let optics = 9 | place | corrected(number);
-                assert_eq!(correction(optics), number.min(UNCORRECTED));
+        for number in [0, 1, 77, 126, 127, 1000] {
+            for (place, yarn) in places(0b11111).into_iter().zip([0, 1]) {
+                let optics = 9 | place | corrected(number, yarn);
+                assert_eq!(correction(optics), (number.min(UNCORRECTED), yarn));
                 assert_eq!(optics & !PLACE, 9);
-                assert_eq!(optics & PLACE & !corrected(UNCORRECTED), place);
+                assert_eq!(optics & PLACE & !corrected(UNCORRECTED, 1), place);
             }
         }
     }
@@ -153,6 +159,7 @@ mod tests {
         for i in 0..2000 {
             let arrival = Arrival {
                 order: i as u32 % 5,
+                mixed: i % 3 == 0,
                 optics: 7 | places((i % 32) as u8)[i % 2],
                 fibre: ring(i),
                 alpha: 0.08,

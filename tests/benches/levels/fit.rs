@@ -5,11 +5,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::Vec3;
-use pickglass::cloth::levels::fit::{self, Light};
+use pickglass::cloth::levels::fit::{Light, measure, transmittance};
 use pickglass::cloth::levels::solve::{Pair, solve};
-use pickglass::cloth::levels::{LevelCorrection, Sizes};
+use pickglass::cloth::levels::{Gain, LevelCorrection, Sizes};
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
-use pickglass::design::{Design, Family};
+use pickglass::design::{Design, Family, Grid, YarnId, YarnMap, YarnMaps};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::presets;
 use pickglass::job::Job;
@@ -92,10 +92,32 @@ struct Measured {
     family: Family,
 }
 
+/// The design with yarns of their own for its weft, and how many the warp has.
+fn apart(design: &Design) -> (Design, u32) {
+    let warps = design.yarns().len() as u16;
+    let other = |yarn: YarnId| YarnId(yarn.0 + warps);
+    let weft = match &design.maps().weft {
+        YarnMap::Order(order) => YarnMap::Order(order.iter().copied().map(other).collect()),
+        YarnMap::Crossings(grid) => {
+            let value = |end, pick| other(grid.get(end, pick));
+            YarnMap::Crossings(Grid::from_fn(grid.ends(), grid.picks(), value).expect("a grid"))
+        }
+    };
+    let maps = YarnMaps {
+        warp: design.maps().warp.clone(),
+        weft,
+    };
+    let yarns = [design.yarns(), design.yarns()].concat();
+    let structure = design.structure().clone();
+    let apart = Design::new("apart", structure, yarns, maps, design.sett().clone());
+    (apart.expect("sound"), u32::from(warps))
+}
+
 /// Measures a design; `kept` is a folder where measurements are kept between runs.
 fn measured(name: &str, level: u32, kept: &Path) -> Measured {
     let begun = Instant::now();
     let design = presets::design(name).expect("there").expect("sound");
+    let (design, warps) = apart(&design);
     let cloth = cloth(&design, level).with_corrections(|family, set| {
         let [coarse, fine] = set.grid.voxel_um();
         LevelCorrection::between(&nodes(family), family, None, coarse / fine)
@@ -112,8 +134,8 @@ fn measured(name: &str, level: u32, kept: &Path) -> Measured {
     let light = known.unwrap_or_else(|| {
         let twice = u32::from(level == 0) + u32::from(family == Family::Silk);
         let paths = PATHS << twice;
-        let light = fit::measure(&cloth, paths, &Job::new()).expect("not cancelled");
-        let through = fit::transmittance(&cloth, RAYS, &Job::new()).expect("not cancelled");
+        let light = measure(&cloth, warps, paths, &Job::new()).expect("not cancelled");
+        let through = transmittance(&cloth, RAYS, &Job::new()).expect("not cancelled");
         let bytes: Vec<u8> = (light.values().iter())
             .flat_map(|value| value.to_le_bytes())
             .collect();
@@ -137,7 +159,7 @@ fn measured(name: &str, level: u32, kept: &Path) -> Measured {
 type Row = (LevelCorrection, Vec<Pair>);
 
 /// Puts what was measured of a design's exemplars to the rows, one a level.
-fn measure(name: &str, kept: &Path, rows: &mut Vec<Row>) {
+fn add_rows(name: &str, kept: &Path, rows: &mut Vec<Row>) {
     let fine = measured(name, 0, kept);
     let mut last = 1.0;
     for level in 1..=4 {
@@ -155,7 +177,6 @@ fn measure(name: &str, kept: &Path, rows: &mut Vec<Row>) {
             ..density.expect("a coarse level is thinned")
         };
         let pair = Pair {
-            ratio: coarse.ratio,
             fine: fine.light.clone(),
             coarse: coarse.light,
         };
@@ -172,12 +193,12 @@ pub fn table(kept: &Path) -> String {
     let any = Family::ALL.into_iter().flat_map(nodes);
     let mut rows: Vec<Row> = any.map(|row| (row, Vec::new())).collect();
     for name in presets::names() {
-        measure(name, kept, &mut rows);
+        add_rows(name, kept, &mut rows);
     }
     let mut text = String::from("[\n");
     for (mut row, pairs) in rows {
         if !pairs.is_empty() {
-            let residual = solve(&pairs, std::slice::from_mut(&mut row));
+            let residual = solve(&pairs, &mut row);
             eprintln!(
                 "{} {:?} {:.2}: error {:.2} % of a lamp, with the gains {:.2} %",
                 row.family.name(),
@@ -187,13 +208,15 @@ pub fn table(kept: &Path) -> String {
                 100.0 * residual.after
             );
         }
+        let round = |number: f32| (number * 1e4).round() / 1e4;
+        for gain in &mut row.gains {
+            *gain = Gain::new(&gain.factors().map(round)).expect("a gain");
+        }
         let sizes = (row.sizes.iter_mut())
             .flat_map(|sizes| sizes.diameters_mm.iter_mut().chain(&mut sizes.pitch_mm));
-        let factors = row.gain.iter_mut().flatten();
-        let factors = factors.chain(row.kinds.iter_mut().flatten().flatten());
         let rest = [&mut row.ratio, &mut row.thin, &mut row.spread];
-        for number in sizes.chain(factors).chain(rest) {
-            *number = (*number * 1e4).round() / 1e4;
+        for number in sizes.chain(rest) {
+            *number = round(*number);
         }
         text += &format!("    {},\n", ron::to_string(&row).expect("a row"));
     }
