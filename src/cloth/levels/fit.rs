@@ -47,8 +47,8 @@ pub(super) const ALBEDOS: [[f32; 2]; 8] = [
     [0.8, 0.995],
     [0.995, 0.8],
 ];
-/// By how much a path is marked each time that the warp scatters it: few enough to be told
-/// apart by their number up to [`MOST_ORDERS`].
+/// What the second channel is multiplied with each time that the warp scatters a path. It
+/// is so near 1 that the number of times can still be read from it after [`MOST_ORDERS`].
 const MARK: f32 = 0.98;
 /// Light of higher order is left out, from both sides of the comparison.
 const MOST_ORDERS: u32 = 192;

@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn a_correction_is_named_beside_any_place_and_yarn() {
         for number in [0, 1, 77, 126, 127, 1000] {
-            for (place, yarn) in places(0b11111).into_iter().zip([0, 1]) {
+            for (place, yarn) in places(0b11111).into_iter().flat_map(|p| [(p, 0), (p, 1)]) {
                 let optics = 9 | place | corrected(number, yarn);
                 assert_eq!(correction(optics), (number.min(UNCORRECTED), yarn));
                 assert_eq!(optics & !PLACE, 9);

@@ -150,17 +150,17 @@ mod tests {
     fn known_gains_of_warp_and_weft_are_found_again() {
         let mut warp = [0.0; FACTORS];
         for (term, factor) in [
-            (0, -0.1),
-            (2, 0.1),
-            (3, -0.1),
-            (5, 0.15),
-            (8, 0.1),
-            (11, 0.1),
+            (0, -0.15),
+            (2, 0.15),
+            (3, -0.15),
+            (5, 0.22),
+            (8, 0.15),
+            (11, 0.15),
         ] {
             warp[term] = factor;
         }
         let mut weft = warp.map(|factor| -0.5 * factor);
-        weft[first_factors(6, 0)[1]] = 0.2;
+        weft[first_factors(6, 0)[1]] = 0.3;
         let wanted = [warp, weft].map(|factors| Gain::new(&factors).unwrap());
         let pair = |seed| {
             let coarse = light(seed);
@@ -170,7 +170,7 @@ mod tests {
         let pairs: Vec<Pair> = (0..8).map(pair).collect();
         let mut found = LevelCorrection::none(Family::Wool);
         let residual = solve(&pairs, &mut found);
-        assert!(residual.before > 0.01, "{residual:?}");
+        assert!(residual.before > 0.02, "{residual:?}");
         assert!(residual.after < 0.2 * residual.before, "{residual:?}");
         // Light that these pairs do not hold is corrected as well.
         let Pair { fine, coarse } = pair(99);
