@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use pickglass::design::Sett;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::presets;
 use pickglass::job::Job;
@@ -61,4 +62,45 @@ fn coarse_levels_keep_light_and_coverage() {
         );
         assert!(corrected[1].abs() < 0.5 * averaged[1], "level {level}");
     }
+}
+
+#[test]
+fn a_coarse_cloth_says_how_far_its_light_is_off() {
+    let of = |sett: Sett, dials: &[(&str, &str)]| {
+        let design = presets::design("linen-plain").unwrap().unwrap();
+        let design = design.with_sett(sett).unwrap();
+        let dials = (dials.iter())
+            .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
+            .collect();
+        let request = StillRequest {
+            width: 8,
+            height: 8,
+            width_mm: Some(2.0),
+            dials,
+            stop: Stop {
+                spp: Some(1),
+                ..Stop::default()
+            },
+            ..StillRequest::default()
+        };
+        let store = ExemplarStore::user();
+        let cloth = still::prepare(&Arc::new(design), &request, &store, &Job::new()).unwrap();
+        let report = still::render(&cloth, &request, &Job::new(), &mut |_| {})
+            .unwrap()
+            .report;
+        assert_eq!(report.light_error, cloth.cloth().light_error());
+        (report.level, report.light_error)
+    };
+    let same = Sett::per_cm(33.0, 32.0);
+    assert_eq!(of(same.clone(), &[("level", "0")]), (0, Some(0.0)));
+    let (level, error) = of(same.clone(), &[("level", "3")]);
+    assert!(
+        level == 3 && (0.001..0.03).contains(&error.unwrap()),
+        "{error:?}"
+    );
+    // Averaging alone was not measured, nor were yarns of another size.
+    let averaged = [("level", "3"), ("level-correction", "off")];
+    assert_eq!(of(same.clone(), &averaged), (3, None));
+    let other = Sett::per_cm(25.0, 28.0);
+    assert_eq!(of(other, &[("level", "3")]), (3, None));
 }

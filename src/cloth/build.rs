@@ -166,6 +166,17 @@ fn matter(
     (matter, gains)
 }
 
+/// The largest residual of the corrections of all sets; `None` where one has none.
+fn light_error(
+    sets: &[Arc<ExemplarSet>],
+    of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
+) -> Option<f32> {
+    let recipes = (sets.iter()).flat_map(|set| [&set.pair.warp, &set.pair.weft].map(|r| (r, set)));
+    recipes
+        .map(|(recipe, set)| of(recipe.family, set)?.residual)
+        .try_fold(0.0f32, |worst, residual| Some(worst.max(residual?)))
+}
+
 /// SGGX roughness of a yarn's fibres.
 pub(super) fn roughness(yarn: &Yarn) -> f32 {
     yarn.alpha().clamp(0.01, 1.0)
@@ -209,6 +220,7 @@ pub struct ClothVolume {
     pub(super) places: Vec<[u32; 2]>,
     /// What corrects the light of warp and weft, by the number that voxels name.
     pub(super) gains: Vec<[Gain; 2]>,
+    light_error: Option<f32>,
     /// SGGX roughness by yarn.
     pub(super) alpha: Vec<f32>,
     /// Single-scattering albedo by yarn.
@@ -298,9 +310,11 @@ impl ClothVolume {
         let SynthesisSettings { seed, patch, .. } = settings.synthesis;
         let (edge_fix, majorants) = fitted(&catalogue, &sets, &settings, design.lattice(), job)?;
         let grid = sets.first().map_or_else(VoxelGrid::default, |set| set.grid);
-        let (matter, gains) = matter(&sets, |family, set| {
+        let correction = |family, set: &ExemplarSet| {
             (settings.correct_levels).then(|| LevelCorrection::of(family, set))?
-        });
+        };
+        let light_error = light_error(&sets, correction);
+        let (matter, gains) = matter(&sets, correction);
         let corrected = settings.correct_levels && grid.level > 0;
         let places = (0..catalogue.blocks() as u16)
             .filter(|_| corrected)
@@ -322,6 +336,7 @@ impl ClothVolume {
             matter,
             places,
             gains,
+            light_error,
             alpha: design.yarns().iter().map(roughness).collect(),
             albedo,
             settings,
@@ -392,9 +407,25 @@ impl ClothVolume {
         of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
     ) -> Self {
         if self.grid.level > 0 {
+            self.light_error = light_error(&self.sets, &of);
             (self.matter, self.gains) = matter(&self.sets, of);
         }
         self
+    }
+
+    /// The level of its exemplars.
+    pub fn level(&self) -> u32 {
+        self.grid.level
+    }
+
+    /// How far the light of this cloth is off that of level 0, as a share of it: root mean
+    /// square over lamps, as it was measured on the worst of its exemplars. 0 for level 0;
+    /// `None` where it was not measured.
+    pub fn light_error(&self) -> Option<f32> {
+        if self.grid.level == 0 {
+            return Some(0.0);
+        }
+        self.light_error
     }
 
     /// The assignment and its randomisation.

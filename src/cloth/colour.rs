@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::build::ClothVolume;
-use crate::design::{Family, Yarn};
+use crate::design::{Family, Positions, Yarn};
 use crate::job::{Cancelled, Job};
 use crate::render::path::{ByOrder, Path, Plane};
 use crate::render::{Counters, Dark, Random, Ray, RenderSettings, Stack, Sun};
@@ -179,8 +179,11 @@ pub fn lamps() -> [Sun; AZIMUTHS] {
     })
 }
 
-/// A ray onto a patch of cloth. The rays of a batch start in the cells of a square of
-/// `row` × `row`, each in its own.
+/// Threads along a side of the patch that is measured, at least.
+const PATCH: u32 = 24;
+
+/// A ray onto a patch of cloth that is whole repeats. The rays of a batch start in the
+/// cells of a square of `row` × `row`, each in its own.
 pub(super) fn first_ray(
     cloth: &ClothVolume,
     row: u32,
@@ -188,7 +191,11 @@ pub(super) fn first_ray(
     direction: Vec3,
     random: &mut Random,
 ) -> Ray {
-    let patch = Vec2::new(cloth.ends().pitch(0) as f32, cloth.picks().pitch(0) as f32) * 24.0;
+    let side = |threads: &Positions| {
+        let repeats = PATCH.div_ceil(threads.threads());
+        threads.repeat_mm() as f32 * repeats as f32
+    };
+    let patch = Vec2::new(side(cloth.ends()), side(cloth.picks()));
     let cell = Vec2::new((index % row) as f32, (index / row) as f32);
     let place = (cell + Vec2::from(random.pair())) / row as f32;
     let above = (cloth.height_range().1 + 1.0) / direction.z.abs().max(0.1);

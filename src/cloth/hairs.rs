@@ -11,7 +11,7 @@ use super::build::ClothVolume;
 use super::hair_cells::{HairCell, HairCells};
 use crate::exemplar::hairs::{HairPatch, root_step};
 use crate::exemplar::{CELL, cell_of};
-use crate::render::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
+use crate::render::{Bounds, MajorantWalk, Medium, Ray, SYSTEM, Stretch, Voxel};
 use crate::yarn::{WeaveGeometry, YarnRecipe};
 
 /// Most cells that one walk visits.
@@ -366,7 +366,7 @@ impl MajorantWalk for HairWalk<'_> {
             sigma,
             direction,
             alpha: layer.cloth.alpha[usize::from(yarn.0)],
-            optics: u32::from(yarn.0),
+            optics: u32::from(yarn.0) | (SYSTEM * u32::from(weft)),
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::job::{Cancelled, Job};
 use crate::synthesis::Catalogue;
 
 /// Changes whenever exemplars built from the same recipe change.
-const FORMAT: u32 = 5;
+const FORMAT: u32 = 6;
 const MAGIC: &[u8; 8] = b"pickglas";
 /// Bytes that the folder may hold.
 const LIMIT: u64 = 4 << 30;

@@ -299,8 +299,8 @@ fn share_of(direction: Direction, radius: f32, grid: &VoxelGrid) -> f32 {
         return 1.0;
     }
     let across = match direction {
-        Direction::Warp => grid.voxel_mm.x,
-        Direction::Weft => grid.voxel_mm.y,
+        Direction::Warp => 0,
+        Direction::Weft => 1,
     };
     // The weights over a plane make a disc with a soft rim; on thick voxels, a cone.
     let section = |edge: f32| {
@@ -310,8 +310,10 @@ fn share_of(direction: Direction, radius: f32, grid: &VoxelGrid) -> f32 {
             (radius + edge).powi(3) / (6.0 * edge) * (radius / edge)
         }
     };
-    let edge = edge_of(Vec2::new(across, grid.voxel_mm.z));
-    section(edge / (1 << grid.level) as f32) / section(edge)
+    let fine = grid.pitch() / Vec2::from(grid.fine().map(|side| side as f32));
+    let fine = edge_of(Vec2::new(fine[across], (fine.x * fine.y).sqrt()));
+    let edge = edge_of(Vec2::new(grid.voxel_mm[across], grid.voxel_mm.z));
+    section(fine) / section(edge)
 }
 
 impl Sums {

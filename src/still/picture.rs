@@ -169,12 +169,15 @@ pub fn render(
         Some(hairs) => shot.expose(&Both(&cloth, hairs), job, on_pass)?,
         None => shot.expose(&cloth, job, on_pass)?,
     };
-    Ok(shot.develop(
+    let mut still = shot.develop(
         outcome,
         prepared.seconds.clone(),
         prepared.effects.clone(),
         Subject::Design(Arc::clone(&prepared.design)),
-    ))
+    );
+    still.report.level = cloth.level();
+    still.report.light_error = cloth.light_error();
+    Ok(still)
 }
 
 /// A picture about to be taken.
@@ -275,6 +278,8 @@ impl Shot<'_> {
             invalid_samples: outcome.counters.invalid_samples,
             majorant_violations: outcome.counters.majorant_violations,
             effects,
+            level: 0,
+            light_error: Some(0.0),
         };
         Still {
             report,

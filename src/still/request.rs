@@ -158,4 +158,8 @@ pub struct StillReport {
     pub majorant_violations: u64,
     /// Effects by name, and whether they were simulated.
     pub effects: Vec<(String, bool)>,
+    /// The cloth's level; 0 of what is no cloth.
+    pub level: u32,
+    /// See [`crate::cloth::ClothVolume::light_error`].
+    pub light_error: Option<f32>,
 }

@@ -1,12 +1,12 @@
 //! What coarser voxels cost and save, and what corrects their light.
 //!
 //! `cargo bench --bench levels` prints the time to build the exemplars of each level, and
-//! mean radiance and coverage of the cloth against level 0, six designs under four lights,
-//! with the correction and without it (`-- NAME` for some designs alone, `--spp N` for
+//! mean radiance (with the standard error of the difference) and coverage of the cloth
+//! against level 0, six designs under four lights, with the correction and without it (`-- NAME` for some designs alone, `--spp N` for
 //! less noise, `--corrected` without the rows of averaging alone). `-- --fit DIR`
 //! measures the corrections, keeping what is measured in a folder, and prints the table;
-//! `-- --fit DIR --write` puts it in the place of `presets/levels.ron`. Nothing is
-//! asserted.
+//! `-- --fit DIR --write` puts it in the place of `presets/levels.ron`; `--paths N` takes
+//! more of them for what is not kept yet. Nothing is asserted.
 
 #[path = "levels/fit.rs"]
 mod fit;
@@ -33,14 +33,27 @@ const LIGHTS: [&str; 4] = ["day", "studio", "sun", "raking-left"];
 /// Samples a pixel where none are asked for.
 const SPP: u32 = 32;
 
-/// Mean radiance (over pixels and channels) and mean coverage of a picture.
-fn means(film: &Film) -> (f64, f64) {
-    let count = film.pixels().len() as f64;
-    let mean = |of: &dyn Fn(&Pixel) -> f64| film.pixels().iter().map(of).sum::<f64>() / count;
-    (
-        mean(&|pixel| f64::from(pixel.mean().element_sum()) / 3.0),
-        mean(&|pixel| f64::from(pixel.alpha())),
-    )
+/// What a picture shows.
+struct Shown {
+    /// Mean radiance over pixels and channels.
+    light: f64,
+    /// Mean coverage.
+    cover: f64,
+    /// Standard error of the mean luminance, as a share of it.
+    noise: f64,
+}
+
+impl Shown {
+    fn of(film: &Film) -> Self {
+        let sum = |of: &dyn Fn(&Pixel) -> f64| film.pixels().iter().map(of).sum::<f64>();
+        let count = film.pixels().len() as f64;
+        let noise = sum(&|pixel| pixel.variance());
+        Self {
+            light: sum(&|pixel| f64::from(pixel.mean().element_sum()) / 3.0) / count,
+            cover: sum(&|pixel| f64::from(pixel.alpha())) / count,
+            noise: noise.sqrt() / sum(&|pixel| pixel.luminance()),
+        }
+    }
 }
 
 /// A cloth at a level.
@@ -49,8 +62,8 @@ struct Measured {
     seconds: f64,
     /// Voxels of a block.
     block: [usize; 3],
-    /// Mean radiance and coverage under each light.
-    means: Vec<(f64, f64)>,
+    /// What is seen under each light.
+    shown: Vec<Shown>,
 }
 
 /// Makes a design at a level and looks at it under each light.
@@ -82,19 +95,22 @@ fn measured(name: &str, level: u32, corrected: bool, spp: u32) -> Measured {
             ..request.clone()
         };
         let still = still::render(&cloth, &request, &Job::new(), &mut |_| {});
-        means(&still.expect("a picture").film)
+        Shown::of(&still.expect("a picture").film)
     };
     Measured {
         seconds,
         block: cloth.cloth().sets()[0].grid.block,
-        means: LIGHTS.iter().map(under).collect(),
+        shown: LIGHTS.iter().map(under).collect(),
     }
 }
 
 /// Prints what the levels of the chosen designs do to light. Small blocks have no voxels
 /// coarser than eight a side: there level 4 is level 3.
 fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
-    println!("mean radiance against level 0 (and difference of coverage): {LIGHTS:?}, {spp} spp");
+    println!(
+        "mean radiance against level 0 ± its standard error (and difference of coverage): \
+         {LIGHTS:?}, {spp} spp"
+    );
     let mut worst = [0.0f64; 2];
     for name in DESIGNS {
         if !chosen.is_empty() && !chosen.iter().any(|word| word == name) {
@@ -115,14 +131,19 @@ fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
                 both.insert(0, ("averaged", measured(name, level, false, spp)));
             }
             for (way, coarse) in &both {
-                let pairs = || fine.means.iter().zip(&coarse.means);
+                let pairs = || fine.shown.iter().zip(&coarse.shown);
                 let worst = &mut worst[usize::from(*way == "corrected")];
                 for (f, c) in pairs() {
-                    *worst = worst.max((c.0 / f.0 - 1.0).abs());
+                    *worst = worst.max((c.light / f.light - 1.0).abs());
                 }
                 let row: Vec<String> = pairs()
                     .map(|(f, c)| {
-                        format!("{:+6.2} % ({:+.3})", 100.0 * (c.0 / f.0 - 1.0), c.1 - f.1)
+                        format!(
+                            "{:+6.2} ±{:.2} % ({:+.3})",
+                            100.0 * (c.light / f.light - 1.0),
+                            100.0 * c.noise.hypot(f.noise),
+                            c.cover - f.cover
+                        )
                     })
                     .collect();
                 println!(
@@ -142,12 +163,16 @@ fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
+    let number = |name: &str| {
+        let place = words.iter().position(|word| word == name)?;
+        words.get(place + 1)?.parse().ok()
+    };
     let fit = words.iter().position(|word| word == "--fit");
     if let Some(place) = fit {
         let kept = words
             .get(place + 1)
             .map_or("levels-measured", String::as_str);
-        let table = fit::table(Path::new(kept));
+        let table = fit::table(Path::new(kept), number("--paths").unwrap_or(fit::PATHS));
         if words.iter().any(|word| word == "--write") {
             let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/levels.ron");
             atomic::write(&preset, table.as_bytes()).expect("the preset is written");
@@ -155,9 +180,7 @@ fn main() {
             print!("{table}");
         }
     } else {
-        let spp = (words.iter().position(|word| word == "--spp"))
-            .and_then(|place| words.get(place + 1)?.parse().ok())
-            .unwrap_or(SPP);
+        let spp = number("--spp").unwrap_or(SPP);
         let alone = words.iter().any(|word| word == "--corrected");
         let chosen: Vec<String> = (words.into_iter())
             .filter(|word| DESIGNS.contains(&word.as_str()))

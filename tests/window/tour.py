@@ -48,6 +48,7 @@ class Tour:
         say(f"{self.samples()} samples after {time.monotonic() - begun:.0f} s")
 
     def keep(self, name):
+        self.folder.mkdir(parents=True, exist_ok=True)
         path = self.folder / f"window-{name}.png"
         self.desk.picture().save(path)
         try:

@@ -226,6 +226,8 @@ fn a_still_is_written_and_reported() {
             "invalid_samples",
             "majorant_violations",
             "effects",
+            "level",
+            "light_error",
         ],
     );
     assert_eq!(report["spp"], 2);
@@ -235,6 +237,23 @@ fn a_still_is_written_and_reported() {
         .expect("a folder")
         .collect();
     assert_eq!(names.len(), 1, "nothing but the picture: {names:?}");
+}
+
+#[test]
+fn a_coarse_still_says_how_far_its_light_is_off() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let still = |level: &str, more: &[&str]| {
+        let level = format!("level={level}");
+        let line = ["still", "oxford", "-o", "a.png", "--size", "16x16"];
+        let rest = ["--spp", "1", "--set", &level];
+        pickglass(folder.path(), &[&line[..], &rest, more].concat())
+    };
+    let said = |level| String::from_utf8_lossy(&still(level, &[]).stdout).into_owned();
+    assert!(said("3").contains(", level 3: light ±"), "{}", said("3"));
+    assert!(!said("0").contains("level"), "{}", said("0"));
+    let report = json(&still("3", &["--json"]));
+    let error = report["light_error"].as_f64().expect("measured");
+    assert!(report["level"] == 3 && (0.001..0.03).contains(&error));
 }
 
 #[test]

@@ -7,16 +7,17 @@
 //! are short: for each long path a few short ones are followed as well.
 
 use std::f32::consts::{PI, TAU};
+use std::ops::Range;
 
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::series::{KINDS, TERMS, kind, terms};
+use super::series::{KINDS, TERMS, kind, places, terms};
 use crate::cloth::ClothVolume;
 use crate::cloth::colour::{first_ray, path_to};
 use crate::job::{Cancelled, Job};
 use crate::render::path::Tally;
-use crate::render::{Arrival, Counters, PLACE, Random, RenderSettings, Scatterer, Stack, Sun};
+use crate::render::{Arrival, Counters, PLACE, Random, Ray, RenderSettings, Scatterer, Stack, Sun};
 
 /// Elevations of the lamps, degrees, and where each starts its ring of [`AZIMUTHS`], as a
 /// share of a step: all round, straight across and along the yarns, where highlights are
@@ -37,16 +38,21 @@ pub(super) const AZIMUTHS: usize = 4;
 /// Lamps of a measurement.
 pub const LAMPS: usize = RINGS.len() * AZIMUTHS;
 /// Albedos of warp and weft for which light is summed: dark, pale, and either of them dark.
-pub(super) const ALBEDOS: [[f32; 2]; 8] = [
+pub(super) const ALBEDOS: [[f32; 2]; 10] = [
     [0.5, 0.5],
     [0.9, 0.9],
     [0.98, 0.98],
-    [0.995, 0.995],
+    [0.998, 0.998],
     [0.4, 0.98],
     [0.98, 0.4],
     [0.8, 0.995],
     [0.995, 0.8],
+    [0.25, 0.998],
+    [0.998, 0.25],
 ];
+/// Light is summed apart where the eye looks at the weft's and at the warp's side of the
+/// weave: a design may show either alone.
+pub(super) const SEEN: usize = 2;
 /// What the second channel is multiplied with each time that the warp scatters a path. It
 /// is so near 1 that the number of times can still be read from it after [`MOST_ORDERS`].
 const MARK: f32 = 0.98;
@@ -60,18 +66,32 @@ const ROW: u32 = 16;
 const TASKS: u32 = 16;
 /// Light below which shadow rays play roulette.
 const SHADOW_ROULETTE: f32 = 0.1;
-/// Numbers of a lamp and a pair of albedos: of the last yarn (warp, weft), the kind of
-/// place and the order (once, more), by term.
+/// Numbers of a lamp, a pair of albedos and a side of the weave: of the last yarn (warp,
+/// weft), the kind of place and the order (once, more), by term.
 pub(super) const EACH: usize = 2 * KINDS * 2 * TERMS;
+const NUMBERS: usize = LAMPS * ALBEDOS.len() * SEEN * EACH;
 
-/// Mean light by lamp, pair of albedos, last yarn, kind of place, order (once, more often)
-/// and term.
+/// Mean light by lamp, pair of albedos, yarn on top (weft, warp), last yarn (warp, weft),
+/// kind of place, order (once, more often) and term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light(Vec<f64>);
 
+/// Place of the terms of a last yarn, a kind of place and an order (0: once) among the
+/// numbers of [`EACH`], in units of [`TERMS`].
+const fn place_of(yarn: usize, kind: usize, order: usize) -> usize {
+    (yarn * KINDS + kind) * 2 + order
+}
+
+/// The terms among the numbers of [`EACH`], each with its last yarn, kind of place and
+/// order.
+pub(super) fn by_place(numbers: &[f64]) -> impl Iterator<Item = ([usize; 3], &[f64])> {
+    (numbers.chunks_exact(TERMS).enumerate())
+        .map(|(place, terms)| ([place / 2 / KINDS, place / 2 % KINDS, place % 2], terms))
+}
+
 impl Light {
     pub(super) fn dark() -> Self {
-        Self(vec![0.0; LAMPS * ALBEDOS.len() * EACH])
+        Self(vec![0.0; NUMBERS])
     }
 
     /// All numbers, to keep them.
@@ -81,12 +101,23 @@ impl Light {
 
     /// Light from numbers that were kept; `None` when there are too few or too many.
     pub fn from_values(values: Vec<f64>) -> Option<Self> {
-        (values.len() == LAMPS * ALBEDOS.len() * EACH).then_some(Self(values))
+        (values.len() == NUMBERS).then_some(Self(values))
     }
 
-    /// The numbers of each lamp and pair of albedos; see [`EACH`].
-    pub(super) fn each(&self) -> impl Iterator<Item = &[f64]> {
-        self.0.chunks_exact(EACH)
+    /// The mean of some lamps for a pair of albedos: its numbers where the weft is on top
+    /// and where the warp is, see [`EACH`].
+    pub(super) fn under(&self, lamps: Range<usize>, albedo: usize) -> [Vec<f64>; SEEN] {
+        let share = 1.0 / lamps.len() as f64;
+        std::array::from_fn(|side| {
+            let mut mean = vec![0.0; EACH];
+            for lamp in lamps.clone() {
+                let first = ((lamp * ALBEDOS.len() + albedo) * SEEN + side) * EACH;
+                for (sum, value) in mean.iter_mut().zip(&self.0[first..][..EACH]) {
+                    *sum += share * value;
+                }
+            }
+            mean
+        })
     }
 }
 
@@ -96,6 +127,8 @@ struct Terms<'l> {
     suns: &'l [Sun],
     /// Yarns below are the warp's.
     warps: u32,
+    /// Which side of the weave the path starts at: 1 where the warp is on top.
+    seen: usize,
     sums: Light,
 }
 
@@ -115,7 +148,7 @@ impl Tally for Terms<'_> {
         };
         let (kind, terms) = (kind(arrival).min(KINDS - 1), terms(arrival));
         let yarn = usize::from(arrival.optics & !PLACE >= self.warps);
-        let first = ((yarn * KINDS + kind) * 2 + usize::from(arrival.order > 1)) * TERMS;
+        let first = place_of(yarn, kind, usize::from(arrival.order > 1)) * TERMS;
         let share = if arrival.order > 1 {
             1.0
         } else {
@@ -126,12 +159,173 @@ impl Tally for Terms<'_> {
         let by_warp = by_warp.clamp(0, order);
         for (k, [warp, weft]) in ALBEDOS.iter().enumerate() {
             let light = light.x * share * warp.powi(by_warp) * weft.powi(order - by_warp);
-            let sums = &mut self.sums.0[(lamp * ALBEDOS.len() + k) * EACH + first..][..TERMS];
+            let side = (lamp * ALBEDOS.len() + k) * SEEN + self.seen;
+            let sums = &mut self.sums.0[side * EACH + first..][..TERMS];
             for (sum, term) in sums.iter_mut().zip(terms) {
                 *sum += f64::from(light * term);
             }
         }
     }
+}
+
+/// How the terms of the series go together in the light of a cloth: mean products of each
+/// two, by last yarn (warp, weft), kind of place and order (once, more often).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Products(Vec<f64>);
+
+/// Products of the terms of one place.
+const SQUARE: usize = TERMS * TERMS;
+/// Directions that are tried of light from anywhere, at each block's lower and upper yarn.
+const ANYWHERE: usize = 120;
+
+/// Any direction.
+fn direction(random: &mut Random) -> Vec3 {
+    let (up, around) = (2.0 * random.uniform() - 1.0, TAU * random.uniform());
+    let aside = (1.0 - up * up).max(0.0).sqrt();
+    Vec3::new(aside * around.cos(), aside * around.sin(), up)
+}
+
+impl Products {
+    /// Albedos of the cloths whose light they are the mean of.
+    const OF: [f32; 3] = [0.5, 0.9, 0.995];
+
+    fn none() -> Self {
+        Self(vec![0.0; 2 * KINDS * 2 * SQUARE])
+    }
+
+    /// Of light from anywhere to anywhere at every kind of place, as no cloth shows all of it.
+    pub(super) fn anywhere() -> Self {
+        let mut mean = Self::none();
+        let mut random = Random::new(14, 0, 0);
+        let arrivals = 32 * 2 * ANYWHERE * 2 * 2;
+        for optics in (0..32).flat_map(places) {
+            for index in 0..ANYWHERE {
+                let aside = TAU * random.uniform();
+                let slope = 0.4 * (2.0 * random.uniform() - 1.0);
+                let level = (1.0 - slope * slope).sqrt();
+                let fibre = Vec3::new(level * aside.cos(), level * aside.sin(), slope);
+                let light = direction(&mut random);
+                let elsewhere = direction(&mut random);
+                for more in [0, 1] {
+                    let straight = more == 0 || index % 2 == 0;
+                    let arrival = Arrival {
+                        order: [1, [2, 3, 6, 12, 40, 120][index % 6]][more],
+                        mixed: more == 1 && index % 4 < 2,
+                        optics,
+                        fibre,
+                        alpha: 0.2,
+                        to_eye: if straight { Vec3::Z } else { elsewhere },
+                        to_light: light.with_z(light.z.abs()),
+                    };
+                    for yarn in [0, 1] {
+                        mean.add(yarn, &arrival, 1.0 / arrivals as f64);
+                    }
+                }
+            }
+        }
+        mean
+    }
+
+    /// Adds so much of an arrival.
+    #[inline]
+    fn add(&mut self, yarn: usize, arrival: &Arrival, share: f64) {
+        let (kind, terms) = (kind(arrival).min(KINDS - 1), terms(arrival));
+        let first = place_of(yarn, kind, usize::from(arrival.order > 1)) * SQUARE;
+        for (row, a) in self.0[first..][..SQUARE].chunks_exact_mut(TERMS).zip(terms) {
+            for (sum, b) in row.iter_mut().zip(terms) {
+                *sum += share * f64::from(a * b);
+            }
+        }
+    }
+
+    /// All numbers, to keep them.
+    pub fn values(&self) -> &[f64] {
+        &self.0
+    }
+
+    /// Products from numbers that were kept; `None` when there are too few or too many.
+    pub fn from_values(values: Vec<f64>) -> Option<Self> {
+        (values.len() == 2 * KINDS * 2 * SQUARE).then_some(Self(values))
+    }
+
+    /// The products of each two terms, row by row, each with their last yarn, kind of
+    /// place and order.
+    pub(super) fn by_place(&self) -> impl Iterator<Item = ([usize; 3], &[f64])> {
+        (self.0.chunks_exact(SQUARE).enumerate())
+            .map(|(place, square)| ([place / 2 / KINDS, place / 2 % KINDS, place % 2], square))
+    }
+}
+
+/// Sums of products by albedo. All of a path's channels are its light in white cloth.
+struct Squares {
+    warps: u32,
+    sums: [Products; Products::OF.len()],
+}
+
+impl Tally for Squares {
+    #[inline]
+    fn albedo<S: Scatterer>(&self, _: &S, _: u32) -> Vec3 {
+        Vec3::ONE
+    }
+
+    fn add(&mut self, _: u32, _: Vec3) {}
+
+    #[inline]
+    fn add_from<S: Scatterer>(&mut self, _: &S, arrival: &Arrival, light: Vec3) {
+        let yarn = usize::from(arrival.optics & !PLACE >= self.warps);
+        for (sums, albedo) in self.sums.iter_mut().zip(Products::OF) {
+            let light = light.x * albedo.powi(arrival.order as i32);
+            sums.add(yarn, arrival, light.into());
+        }
+    }
+}
+
+/// Measures how the terms go together in the light of the cloth that [`measure`] measures.
+///
+/// # Errors
+/// [`Cancelled`] when the job was.
+pub fn products(
+    cloth: &ClothVolume,
+    warps: u32,
+    paths: u32,
+    job: &Job,
+) -> Result<Products, Cancelled> {
+    let slide = RenderSettings::default().backing_slide_mm;
+    let stack = Stack::new(cloth, 1, slide.into());
+    let suns = lamps();
+    let path = path_to(&suns, &stack, MOST_ORDERS, SHADOW_ROULETTE * LAMPS as f32);
+    let parts: Vec<Squares> = (0..TASKS)
+        .into_par_iter()
+        .map(|task| {
+            let mut tally = Squares {
+                warps,
+                sums: std::array::from_fn(|_| Products::none()),
+            };
+            let mut counters = Counters::default();
+            for square in (task..paths.div_ceil(ROW * ROW)).step_by(TASKS as usize) {
+                job.check()?;
+                for index in 0..ROW * ROW {
+                    let mut random = Random::new(13, u64::from(square), u64::from(index));
+                    let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
+                    path.trace(ray, &mut tally, &mut random, &mut counters);
+                }
+            }
+            Ok(tally)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    // Each albedo counts alike, however much light it shows.
+    let mut mean = Products::none();
+    for albedo in 0..Products::OF.len() {
+        let sums = || parts.iter().map(|part| &part.sums[albedo].0);
+        let light: f64 = (sums().flat_map(|sums| sums.iter().step_by(SQUARE))).sum();
+        let share = 1.0 / (Products::OF.len() as f64 * light.max(f64::MIN_POSITIVE));
+        for sums in sums() {
+            for (mean, sum) in mean.0.iter_mut().zip(sums) {
+                *mean += share * sum;
+            }
+        }
+    }
+    Ok(mean)
 }
 
 /// The lamps: a white diffuser under any one of them has radiance 1.
@@ -169,6 +363,7 @@ pub fn measure(cloth: &ClothVolume, warps: u32, paths: u32, job: &Job) -> Result
             let mut tally = Terms {
                 suns: &suns,
                 warps,
+                seen: 0,
                 sums: Light::dark(),
             };
             let mut counters = Counters::default();
@@ -179,6 +374,7 @@ pub fn measure(cloth: &ClothVolume, warps: u32, paths: u32, job: &Job) -> Result
                     for once in 0..ONCE {
                         let path = if once == 0 { &long } else { &short };
                         let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
+                        tally.seen = usize::from(warp_on_top(cloth, &ray));
                         path.trace(ray, &mut tally, &mut random, &mut counters);
                     }
                 }
@@ -194,6 +390,13 @@ pub fn measure(cloth: &ClothVolume, warps: u32, paths: u32, job: &Job) -> Result
         }
     }
     Ok(mean)
+}
+
+/// Whether the warp is on top where a ray from straight above meets the cloth.
+fn warp_on_top(cloth: &ClothVolume, ray: &Ray) -> bool {
+    let (end, _) = cloth.ends().locate(f64::from(ray.origin.x));
+    let (pick, _) = cloth.picks().locate(f64::from(ray.origin.y));
+    cloth.warp_up(end, pick) == Some(true)
 }
 
 /// Mean transmittance of a cloth, straight on and at 45° from two sides.
@@ -257,13 +460,14 @@ mod tests {
         let prepared =
             still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
         let of = |warps| measure(prepared.cloth(), warps, 512, &Job::new()).unwrap();
-        // Light by pair of albedos, last yarn and order, over all lamps and kinds.
+        // Light by pair of albedos, last yarn and order, mean of all lamps.
         let sums = |light: &Light| {
             let mut sums = vec![[[0.0; 2]; 2]; ALBEDOS.len()];
-            for (index, each) in light.each().enumerate() {
-                for (place, terms) in each.chunks_exact(TERMS).enumerate() {
-                    let (yarn, order) = (place / 2 / KINDS, place % 2);
-                    sums[index % ALBEDOS.len()][yarn][order] += terms[0];
+            for (albedo, sums) in sums.iter_mut().enumerate() {
+                for each in light.under(0..LAMPS, albedo) {
+                    for ([yarn, _, order], terms) in by_place(&each) {
+                        sums[yarn][order] += terms[0];
+                    }
                 }
             }
             sums
@@ -287,6 +491,18 @@ mod tests {
         }
         let [once, more] = [0, 1].map(|order| both[2][0][order] + both[2][1][order]);
         assert!((once / none[2][1][0] - 1.0).abs() < 0.03 && more > 0.0);
+    }
+
+    #[test]
+    fn a_place_is_read_where_it_was_put() {
+        let numbers: Vec<f64> = (0..EACH).map(|i| i as f64).collect();
+        let mut all = 0;
+        for ([yarn, kind, order], terms) in by_place(&numbers) {
+            assert_eq!(terms[0], (place_of(yarn, kind, order) * TERMS) as f64);
+            assert!(yarn < 2 && kind < KINDS && order < 2);
+            all += terms.len();
+        }
+        assert_eq!(all, EACH);
     }
 
     #[test]

@@ -10,7 +10,9 @@ use crate::render::Arrival;
 pub const FACTORS: usize = 2 * TERMS + KINDS * 2 * OWN;
 /// A gain outside is not believed: the series is not meant to run away between the
 /// directions that it was measured in.
-pub(super) const GAINS: std::ops::RangeInclusive<f32> = 0.4..=2.5;
+pub(super) const GAINS: std::ops::RangeInclusive<f32> = 0.2..=4.0;
+/// A factor beyond is no correction any more.
+pub(super) const FARTHEST: f32 = 4.0;
 
 /// Where the factors of light scattered once (0) or more often (1) begin: those of all
 /// [`TERMS`], and those of the [`OWN`] of a kind of place.
@@ -30,11 +32,11 @@ impl Gain {
     pub const NONE: Self = Self([0.0; FACTORS]);
 
     /// From what each factor is; `None` for more than [`FACTORS`] or for one that is no
-    /// number or beyond ±2. Factors that are not given are 0.
+    /// number or beyond ±4. Factors that are not given are 0.
     pub fn new(factors: &[f32]) -> Option<Self> {
         let mut gain = Self::NONE;
         gain.0.get_mut(..factors.len())?.copy_from_slice(factors);
-        (gain.0.iter().all(|factor| factor.abs() < 2.0)).then_some(gain)
+        (gain.0.iter().all(|factor| factor.abs() <= FARTHEST)).then_some(gain)
     }
 
     /// The factors.
@@ -66,7 +68,7 @@ impl TryFrom<Vec<f32>> for Gain {
 
     fn try_from(factors: Vec<f32>) -> Result<Self, String> {
         Self::new(&factors)
-            .ok_or_else(|| format!("a gain has at most {FACTORS} factors between -2 and 2"))
+            .ok_or_else(|| format!("a gain has at most {FACTORS} factors between -4 and 4"))
     }
 }
 
@@ -107,7 +109,7 @@ mod tests {
         }
         assert_eq!(ron::to_string(&Gain::NONE).unwrap(), "[]");
         assert!(Gain::new(&[0.0; FACTORS + 1]).is_none());
-        for wrong in [f32::NAN, f32::INFINITY, -2.0] {
+        for wrong in [f32::NAN, f32::INFINITY, -4.1] {
             assert!(Gain::new(&[0.1, wrong]).is_none());
         }
         assert!(ron::from_str::<Gain>("[0.1, 7.0]").is_err());

@@ -93,6 +93,11 @@ pub struct LevelCorrection {
     pub spread: f32,
     /// Of the light of the warp and of the weft.
     pub gains: [Gain; 2],
+    /// What is left with them: root mean square over lamps and albedos of how far light is
+    /// off level 0's, as a share of it, with the noise of measuring it. `None`: not
+    /// measured.
+    #[serde(default)]
+    pub residual: Option<f32>,
 }
 
 impl LevelCorrection {
@@ -105,6 +110,7 @@ impl LevelCorrection {
             thin: 0.0,
             spread: 1.0,
             gains: [Gain::NONE; 2],
+            residual: None,
         }
     }
 
@@ -164,12 +170,16 @@ impl LevelCorrection {
             thin: mix(a.thin, b.thin),
             spread: mix(a.spread, b.spread),
             gains: std::array::from_fn(|yarn| a.gains[yarn].mixed(&b.gains[yarn], t)),
+            residual: b.residual.map(|b| mix(a.residual.unwrap_or(0.0), b)),
         }
     }
 
     /// Whether every number of it is one that may be used.
     fn is_sound(&self) -> bool {
-        self.ratio > 1.0 && (0.0..=1.0).contains(&self.thin) && (0.0..=2.0).contains(&self.spread)
+        self.ratio > 1.0
+            && (0.0..=1.0).contains(&self.thin)
+            && (0.0..=2.0).contains(&self.spread)
+            && (self.residual).is_none_or(|residual| (0.0..1.0).contains(&residual))
     }
 }
 
@@ -286,6 +296,13 @@ mod tests {
                 };
                 let found = of(row.ratio);
                 assert_eq!(found.gains, row.gains);
+                // The light of exemplars that were measured is right to a few per cent.
+                assert_eq!(found.residual, row.residual);
+                assert_eq!(row.residual.is_some(), row.sizes.is_some());
+                assert!(
+                    row.residual.is_none_or(|residual| residual < 0.03),
+                    "{row:?}"
+                );
                 // Beyond the ends the nearest holds; finer than all, hardly anything.
                 assert!(of(1e4).ratio < 20.0 && of(1.0 + 1e-4).thin < 1e-3);
             }

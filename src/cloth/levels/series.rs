@@ -5,14 +5,14 @@ use glam::Vec3;
 use crate::render::{Arrival, PLACE, SYSTEM};
 
 /// Terms of a gain's series.
-pub const TERMS: usize = 22;
+pub const TERMS: usize = 24;
 /// Kinds of places where light is scattered.
 pub const KINDS: usize = 18;
 /// Terms that each kind of place has a factor of its own for: the first ones.
-pub const OWN: usize = 2;
+pub const OWN: usize = 4;
 
-/// Light scattered more often than this is that of pale yarns.
-const OFTEN: f32 = 32.0;
+/// Light scattered more often than these is that of yarns paler and paler.
+const OFTEN: [f32; 3] = [8.0, 32.0, 128.0];
 /// The lower yarn's kinds follow the upper one's.
 const LOWER: u32 = 9;
 /// Bits of a place: its kind, from here on the hand of its twill line, then [`SYSTEM`], and
@@ -62,12 +62,13 @@ pub fn kind(arrival: &Arrival) -> usize {
     (place & ((1 << HAND) - 1)) as usize
 }
 
-/// The terms of the series at an arrival, each between −1 and 1: how often the light was
-/// scattered (two of them), whether by both systems of yarns and how often then, how low it
-/// stands over the cloth, how far it comes along the fibre, how far the fibre is off a
-/// mirror's direction (½ where the half vector leans by α), on which side of a twill's
-/// lines the light stands, the fibre's slope, how far the fibre's seen side faces the
-/// light, and where the light stands, all round.
+/// The terms of the series at an arrival, each between −1 and 1: a constant, how often the
+/// light was scattered (four of them, one first), on which side it stands, whether both
+/// systems of yarns scattered it and how often then, how low it stands over the cloth, how
+/// far it comes along the fibre, how far the fibre is off a mirror's direction (½ where the
+/// half vector leans by α), on which side of a twill's lines the light stands, the fibre's
+/// slope, how far the fibre's seen side faces the light, and where the light stands, all
+/// round.
 #[inline]
 pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
     let place = (arrival.optics & PLACE) >> PLACE.trailing_zeros();
@@ -84,7 +85,11 @@ pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
     [
         1.0,
         1.0 / order,
-        order / (order + OFTEN),
+        light.x,
+        light.y,
+        order / (order + OFTEN[0]),
+        order / (order + OFTEN[1]),
+        order / (order + OFTEN[2]),
         mixed,
         mixed / order,
         low,
@@ -99,8 +104,6 @@ pub fn terms(arrival: &Arrival) -> [f32; TERMS] {
         aside * low,
         aside * aside,
         off * off,
-        light.x,
-        light.y,
         light.x * low,
         light.y * low,
         light.x * light.y,

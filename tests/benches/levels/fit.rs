@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::Vec3;
-use pickglass::cloth::levels::fit::{Light, measure, transmittance};
+use pickglass::cloth::levels::fit::{Light, Products, measure, products, transmittance};
 use pickglass::cloth::levels::solve::{Pair, solve};
 use pickglass::cloth::levels::{Gain, LevelCorrection, Sizes};
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use pickglass::design::{Design, Family, Grid, YarnId, YarnMap, YarnMaps};
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::presets;
+use pickglass::formats::{atomic, presets};
 use pickglass::job::Job;
 use pickglass::synthesis::Catalogue;
 
@@ -42,9 +42,11 @@ const DENSITIES: [(Family, [[f32; 2]; 4]); 4] = [
     ),
 ];
 
-/// Paths at a coarse level; level 0, which all levels are compared with, has twice as many,
+/// Paths at a coarse level, where no other number is asked for; level 0, which all levels are compared with, has twice as many,
 /// and silk, whose highlights are narrow, too.
-const PATHS: u32 = 1 << 15;
+pub const PATHS: u32 = 1 << 16;
+/// Paths that measure how terms go together.
+const PRODUCT_PATHS: u32 = 1 << 11;
 /// Rays that measure what a cloth lets through.
 const RAYS: u32 = 1 << 13;
 
@@ -84,9 +86,11 @@ fn nodes(family: Family) -> Vec<LevelCorrection> {
         .collect()
 }
 
-/// The light of a design at a level with its density corrected, and the coarseness.
-struct Measured {
-    light: Light,
+/// The white cloth of a design at a level with its density corrected, and its coarseness.
+struct White {
+    cloth: ClothVolume,
+    /// Yarns below are the warp's.
+    warps: u32,
     ratio: f32,
     sizes: Option<Sizes>,
     family: Family,
@@ -113,9 +117,7 @@ fn apart(design: &Design) -> (Design, u32) {
     (apart.expect("sound"), u32::from(warps))
 }
 
-/// Measures a design; `kept` is a folder where measurements are kept between runs.
-fn measured(name: &str, level: u32, kept: &Path) -> Measured {
-    let begun = Instant::now();
+fn white(name: &str, level: u32) -> White {
     let design = presets::design(name).expect("there").expect("sound");
     let (design, warps) = apart(&design);
     let cloth = cloth(&design, level).with_corrections(|family, set| {
@@ -124,46 +126,66 @@ fn measured(name: &str, level: u32, kept: &Path) -> Measured {
     });
     let set = &cloth.sets()[0];
     let [coarse, fine] = set.grid.voxel_um();
-    let (ratio, family) = (coarse / fine, set.pair.warp.family);
-    let file = kept.join(format!("{name}-{level}.f64"));
-    let known = std::fs::read(&file).ok().and_then(|bytes| {
-        let values = (bytes.chunks_exact(8))
-            .map(|eight| f64::from_le_bytes(eight.try_into().unwrap_or_default()));
-        Light::from_values(values.collect())
-    });
-    let light = known.unwrap_or_else(|| {
-        let twice = u32::from(level == 0) + u32::from(family == Family::Silk);
-        let paths = PATHS << twice;
-        let light = measure(&cloth, warps, paths, &Job::new()).expect("not cancelled");
-        let through = transmittance(&cloth, RAYS, &Job::new()).expect("not cancelled");
-        let bytes: Vec<u8> = (light.values().iter())
-            .flat_map(|value| value.to_le_bytes())
+    White {
+        ratio: coarse / fine,
+        sizes: Sizes::of(set),
+        family: set.pair.warp.family,
+        warps,
+        cloth,
+    }
+}
+
+/// Numbers that are kept in a file, or else made and kept there.
+fn kept(file: &Path, make: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
+    if let Ok(bytes) = std::fs::read(file) {
+        return (bytes.chunks_exact(8))
+            .map(|eight| f64::from_le_bytes(eight.try_into().unwrap_or_default()))
             .collect();
-        std::fs::create_dir_all(kept).expect("a folder");
-        std::fs::write(&file, bytes).expect("measurements are kept");
+    }
+    let values = make();
+    let bytes: Vec<u8> = (values.iter())
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
+    atomic::write(file, &bytes).expect("measurements are kept");
+    values
+}
+
+/// Measures the light of a design's cloth; `folder` is where measurements are kept between
+/// runs.
+fn light(name: &str, level: u32, white: &White, folder: &Path, paths: u32) -> Light {
+    let values = kept(&folder.join(format!("{name}-{level}.f64")), || {
+        let begun = Instant::now();
+        let twice = u32::from(level == 0) + u32::from(white.family == Family::Silk);
+        let (cloth, paths) = (&white.cloth, paths << twice);
+        let light = measure(cloth, white.warps, paths, &Job::new()).expect("not cancelled");
+        let through = transmittance(cloth, RAYS, &Job::new()).expect("not cancelled");
         eprintln!(
-            "{name} level {level}: {ratio:.2} times as coarse, lets through {through:.4}, {:.0} s",
+            "{name} level {level}: {:.2} times as coarse, lets through {through:.4}, {:.0} s",
+            white.ratio,
             begun.elapsed().as_secs_f64()
         );
-        light
+        light.values().to_vec()
     });
-    Measured {
-        light,
-        ratio,
-        sizes: Sizes::of(set),
-        family,
-    }
+    Light::from_values(values).expect("a folder of measurements of this series")
+}
+
+fn products_of(name: &str, level: u32, white: &White, folder: &Path) -> Products {
+    let values = kept(&folder.join(format!("{name}-{level}.products.f64")), || {
+        let products = products(&white.cloth, white.warps, PRODUCT_PATHS, &Job::new());
+        products.expect("not cancelled").values().to_vec()
+    });
+    Products::from_values(values).expect("a folder of measurements of this series")
 }
 
 /// A row of the table before its gains are known, and what they are found from.
 type Row = (LevelCorrection, Vec<Pair>);
 
 /// Puts what was measured of a design's exemplars to the rows, one a level.
-fn add_rows(name: &str, kept: &Path, rows: &mut Vec<Row>) {
-    let fine = measured(name, 0, kept);
+fn add_rows(name: &str, folder: &Path, paths: u32, rows: &mut Vec<Row>) {
+    let fine = light(name, 0, &white(name, 0), folder, paths);
     let mut last = 1.0;
     for level in 1..=4 {
-        let coarse = measured(name, level, kept);
+        let coarse = white(name, level);
         // Small blocks have no coarser voxels than eight a side.
         if coarse.ratio <= 1.02 * last || coarse.sizes.is_none() {
             continue;
@@ -177,8 +199,9 @@ fn add_rows(name: &str, kept: &Path, rows: &mut Vec<Row>) {
             ..density.expect("a coarse level is thinned")
         };
         let pair = Pair {
-            fine: fine.light.clone(),
-            coarse: coarse.light,
+            fine: fine.clone(),
+            coarse: light(name, level, &coarse, folder, paths),
+            products: products_of(name, level, &coarse, folder),
         };
         match rows.iter_mut().find(|(known, _)| *known == row) {
             Some((_, pairs)) => pairs.push(pair),
@@ -189,11 +212,12 @@ fn add_rows(name: &str, kept: &Path, rows: &mut Vec<Row>) {
 
 /// Measures what is not kept yet and returns the text of the table: first what holds for
 /// any yarns of a family, density alone, then the presets' exemplars, each with its gains.
-pub fn table(kept: &Path) -> String {
+pub fn table(folder: &Path, paths: u32) -> String {
     let any = Family::ALL.into_iter().flat_map(nodes);
+    std::fs::create_dir_all(folder).expect("a folder");
     let mut rows: Vec<Row> = any.map(|row| (row, Vec::new())).collect();
     for name in presets::names() {
-        add_rows(name, kept, &mut rows);
+        add_rows(name, folder, paths, &mut rows);
     }
     let mut text = String::from("[\n");
     for (mut row, pairs) in rows {
@@ -207,6 +231,7 @@ pub fn table(kept: &Path) -> String {
                 100.0 * residual.before,
                 100.0 * residual.after
             );
+            row.residual = Some(residual.after as f32);
         }
         let round = |number: f32| (number * 1e4).round() / 1e4;
         for gain in &mut row.gains {
@@ -215,7 +240,7 @@ pub fn table(kept: &Path) -> String {
         let sizes = (row.sizes.iter_mut())
             .flat_map(|sizes| sizes.diameters_mm.iter_mut().chain(&mut sizes.pitch_mm));
         let rest = [&mut row.ratio, &mut row.thin, &mut row.spread];
-        for number in sizes.chain(rest) {
+        for number in sizes.chain(rest).chain(&mut row.residual) {
             *number = round(*number);
         }
         text += &format!("    {},\n", ron::to_string(&row).expect("a row"));

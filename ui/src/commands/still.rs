@@ -122,6 +122,11 @@ pub fn describe(report: &StillReport, path: &Path) -> String {
     let error = report.error.map_or_else(String::new, |error| {
         format!(", error {:.2} %", error * 100.0)
     });
+    let level = match (report.level, report.light_error) {
+        (0, _) => String::new(),
+        (level, Some(error)) => format!(", level {level}: light ±{:.1} %", 100.0 * error),
+        (level, None) => format!(", level {level}: light not measured"),
+    };
     let wrong = match report.invalid_samples + report.majorant_violations {
         0 => String::new(),
         _ => format!(
@@ -130,7 +135,7 @@ pub fn describe(report: &StillReport, path: &Path) -> String {
         ),
     };
     format!(
-        "wrote {} ({} x {}, {} spp{error}, {:.1} s, {:.2} M paths/s){wrong}",
+        "wrote {} ({} x {}, {} spp{error}{level}, {:.1} s, {:.2} M paths/s){wrong}",
         path.display(),
         report.width,
         report.height,
@@ -147,6 +152,7 @@ pub fn report_json(report: &StillReport) -> Value {
         .iter()
         .map(|(name, on)| json!({ "name": name, "on": on }))
         .collect();
+    let light_error = (report.light_error).map(|error| (1e4 * f64::from(error)).round() / 1e4);
     json!({
         "renderer": report.renderer,
         "width": report.width,
@@ -158,6 +164,8 @@ pub fn report_json(report: &StillReport) -> Value {
         "invalid_samples": report.invalid_samples,
         "majorant_violations": report.majorant_violations,
         "effects": effects,
+        "level": report.level,
+        "light_error": light_error,
     })
 }
 

@@ -10,7 +10,7 @@ use egui::{
 
 use super::focus;
 use super::view::{ClothView, scale_bar};
-use super::worker::Picture;
+use super::worker::{Fibres, Picture};
 use crate::tokens::{self, Palette};
 use pickglass::still::StillRequest;
 
@@ -29,7 +29,7 @@ pub struct Shown {
     pub seconds: f64,
     pub error: Option<f64>,
     pub full_size: bool,
-    pub full_cloth: bool,
+    pub fibres: Fibres,
     pub image: Arc<ColorImage>,
     texture: TextureHandle,
 }
@@ -77,7 +77,7 @@ impl ClothPane {
             seconds: picture.seconds,
             error: picture.error,
             full_size: picture.full_size,
-            full_cloth: picture.full_cloth,
+            fibres: picture.fibres,
             image,
             texture,
         });

@@ -6,7 +6,7 @@ use pickglass::design::Design;
 use super::cloth_pane::Shown;
 use super::icons;
 use super::toasts::Grade;
-use super::worker::{Building, Phase};
+use super::worker::{Building, Fibres, Phase};
 use crate::tokens::{self, Palette};
 
 /// What the status line tells of.
@@ -97,13 +97,18 @@ fn quality(shown: &Shown, status: &Status<'_>) -> String {
     let error = shown.error.map_or_else(String::new, |error| {
         format!(" · error {:.1} %", error * 100.0)
     });
-    let state = match status.phase {
-        _ if status.paused => " · paused",
-        Phase::Stopped => " · stopped",
-        Phase::Done => " · done",
-        _ if !shown.full_cloth => " · coarse fibres",
-        _ if !shown.full_size => " · coarse",
-        _ => "",
+    let state = match (status.phase, shown.fibres) {
+        _ if status.paused => " · paused".to_owned(),
+        (Phase::Stopped, _) => " · stopped".to_owned(),
+        (Phase::Done, _) => " · done".to_owned(),
+        (_, Fibres::Coarse { light_error }) => {
+            let light = light_error.map_or_else(String::new, |error| {
+                format!(", light ±{:.1} %", error * 100.0)
+            });
+            format!(" · coarse fibres{light}")
+        }
+        _ if !shown.full_size => " · coarse".to_owned(),
+        _ => String::new(),
     };
     format!("{} spp · {:.1} s{error}{state}", shown.spp, shown.seconds)
 }

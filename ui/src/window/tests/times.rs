@@ -15,6 +15,7 @@ use super::{PreviewSettings, Window, builder, options, wait_for};
 use crate::opened::Opened;
 use crate::window::action::Action;
 use crate::window::app::App;
+use crate::window::worker::Fibres;
 use pickglass::exemplar::ExemplarStore;
 
 /// How often each edit is made.
@@ -112,7 +113,7 @@ fn live(opened: Opened) -> Window {
 fn wait_for_cloth(window: &mut Window) {
     wait_for(window, "the traced cloth", |window| {
         let shown = &window.state().preview.pane.shown;
-        (shown.as_ref()).is_some_and(|shown| shown.spp > 0 && shown.full_cloth)
+        (shown.as_ref()).is_some_and(|shown| shown.spp > 0 && shown.fibres == Fibres::Full)
     });
 }
 

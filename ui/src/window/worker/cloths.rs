@@ -15,7 +15,7 @@ use pickglass::cloth::YarnClasses;
 use pickglass::job::Job;
 use pickglass::still::{self, Followed, PreparedCloth, StillError, UnfinishedCloth};
 
-use super::{Building, Desk, Phase, PreviewRequest};
+use super::{Building, Desk, Fibres, Phase, PreviewRequest};
 
 /// Voxel level of the cloth that is drawn until the full one is built.
 const COARSE_LEVEL: &str = "3";
@@ -47,25 +47,25 @@ enum Wanted {
     All,
 }
 
-/// The best cloth at hand for a request, and whether it is the full one.
+/// The best cloth at hand for a request, and what it is of.
 pub(super) fn cloth_of(
     desk: &Arc<Desk>,
     request: &PreviewRequest,
     job: &Job,
     coarse: &mut Option<Kept>,
-) -> Result<(Arc<PreparedCloth>, bool), StillError> {
+) -> Result<(Arc<PreparedCloth>, Fibres), StillError> {
     still::check_view(&request.design, &request.still)?;
     let full = desk.lock().full.clone();
     let wanted = match full {
         Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&request.still) => {
-            return Ok((cloth, true));
+            return Ok((cloth, Fibres::Full));
         }
         Some((made_for, cloth)) if made_for.same_dials(request) => {
             match cloth.follow(&request.design, &request.drawdown, &request.still, job)? {
                 Some(Followed::Ready(cloth)) => {
                     let cloth = Arc::new(cloth);
                     desk.lock().full = Some((request.clone(), Arc::clone(&cloth)));
-                    return Ok((cloth, true));
+                    return Ok((cloth, Fibres::Full));
                 }
                 Some(Followed::Unfinished(cloth)) => Wanted::Exemplars(Box::new(cloth)),
                 None => Wanted::All,
@@ -74,7 +74,9 @@ pub(super) fn cloth_of(
         _ => Wanted::All,
     };
     build(desk, request, wanted);
-    Ok((coarse_cloth(desk, request, job, coarse)?, false))
+    let cloth = coarse_cloth(desk, request, job, coarse)?;
+    let light_error = cloth.cloth().light_error();
+    Ok((cloth, Fibres::Coarse { light_error }))
 }
 
 fn coarse_cloth(

@@ -10,7 +10,7 @@ use pickglass::still::{
     Engine, FirstSight, Pass, SightTables, Sighted, StillError, StillRequest, Stop,
 };
 
-use super::{Aim, Desk, Picture, PreviewRequest};
+use super::{Aim, Desk, Fibres, Picture, PreviewRequest};
 
 /// A preview ends at this error, or after this many passes.
 const GOOD_ERROR: f64 = 0.005;
@@ -124,7 +124,7 @@ impl Drawing<'_> {
             shown,
             0,
             None,
-            false,
+            Fibres::Coarse { light_error: None },
             under,
         );
         *screen = Some(OnScreen {
@@ -144,7 +144,7 @@ impl Drawing<'_> {
     pub fn trace(
         &self,
         cloth: &dyn Engine,
-        full: bool,
+        fibres: Fibres,
         level: u32,
         seconds: f64,
         screen: &mut Option<OnScreen>,
@@ -172,7 +172,7 @@ impl Drawing<'_> {
             // A finer picture is shown once it is no noisier than the coarser one.
             let better = 2.0 * paths >= before && self.resolves(level);
             if better && self.job.check().is_ok() {
-                self.show(pass, level == 0, full);
+                self.show(pass, level == 0, fibres);
                 if let Some(screen) = screen {
                     screen.paths = paths;
                     screen.traced = enlarged(pass, &self.request.still);
@@ -194,10 +194,10 @@ impl Drawing<'_> {
         crossing < RESOLVED || crossing / (1u64 << level.min(32)) as f32 >= RESOLVED
     }
 
-    fn show(&self, pass: &Pass<'_>, full_size: bool, full_cloth: bool) {
+    fn show(&self, pass: &Pass<'_>, full_size: bool, fibres: Fibres) {
         let size = [pass.width, pass.height];
         let error = (pass.error, full_size);
-        self.send(size, pass.rgba, pass.spp, Some(error), full_cloth, false);
+        self.send(size, pass.rgba, pass.spp, Some(error), fibres, false);
     }
 
     fn send(
@@ -206,7 +206,7 @@ impl Drawing<'_> {
         rgba: &[u8],
         spp: u32,
         traced: Option<(Option<f64>, bool)>,
-        full_cloth: bool,
+        fibres: Fibres,
         under: bool,
     ) {
         let size = size.map(|side| side as usize);
@@ -221,7 +221,7 @@ impl Drawing<'_> {
             seconds: self.begun.elapsed().as_secs_f64(),
             error: traced.and_then(|(error, _)| error),
             full_size: traced.is_some_and(|(_, full_size)| full_size),
-            full_cloth,
+            fibres,
             under,
         };
         let mut shared = self.desk.lock();

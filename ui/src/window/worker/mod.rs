@@ -65,6 +65,16 @@ impl PreviewRequest {
     }
 }
 
+/// The exemplars that a picture is drawn from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fibres {
+    Full,
+    Coarse {
+        /// How far their light is off the full ones', where it was measured.
+        light_error: Option<f32>,
+    },
+}
+
 /// A picture so far, with what it shows.
 pub struct Picture {
     pub generation: u64,
@@ -75,8 +85,7 @@ pub struct Picture {
     pub error: Option<f64>,
     /// The size of the request, not of a coarser level.
     pub full_size: bool,
-    /// Drawn from the full exemplars, not from coarse ones.
-    pub full_cloth: bool,
+    pub fibres: Fibres,
     /// First sight of a place that the eye moved to: the picture that is shown of the same
     /// cloth is better and lies over it.
     pub under: bool,
@@ -377,18 +386,18 @@ fn serve(
     };
     drawing.first_sight(tables, screen)?;
     lower_shield(desk)?;
-    let (cloth, full) = cloth_of(desk, request, job, coarse)?;
+    let (cloth, fibres) = cloth_of(desk, request, job, coarse)?;
     desk.set_phase(Phase::Refining);
     let mut refine = || {
         let mut level = first.0;
-        let mut pass_seconds = drawing.trace(&*cloth, full, level, 0.0, screen)?;
+        let mut pass_seconds = drawing.trace(&*cloth, fibres, level, 0.0, screen)?;
         first.learn(pass_seconds * 1e3);
         while level > 0 {
             level -= 1;
             // Stay until as much time was spent as one pass of the next size will take.
             let next_pass = 16.0 * pass_seconds;
             let left = next_pass - drawing.begun.elapsed().as_secs_f64();
-            pass_seconds = drawing.trace(&*cloth, full, level, left, screen)?;
+            pass_seconds = drawing.trace(&*cloth, fibres, level, left, screen)?;
         }
         Ok(())
     };
