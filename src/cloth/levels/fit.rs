@@ -207,7 +207,7 @@ impl Products {
                 let light = direction(&mut random);
                 let elsewhere = direction(&mut random);
                 for more in [0, 1] {
-                    let straight = more == 0 || index % 2 == 0;
+                    let straight = more == 0 || index.is_multiple_of(2);
                     let arrival = Arrival {
                         order: [1, [2, 3, 6, 12, 40, 120][index % 6]][more],
                         mixed: more == 1 && index % 4 < 2,

@@ -192,7 +192,7 @@ mod tests {
 
     /// Terms that hardly go together.
     fn calm() -> Products {
-        let square = |i: usize| f64::from(u8::from(i % (TERMS + 1) == 0)) / EACH as f64;
+        let square = |i: usize| f64::from(u8::from(i.is_multiple_of(TERMS + 1))) / EACH as f64;
         let square: Vec<f64> = (0..TERMS * TERMS).map(square).collect();
         Products::from_values(square.repeat(EACH / TERMS)).unwrap()
     }

@@ -17,7 +17,7 @@ use super::cloth_pane::{ClothPane, KEY_STEP};
 use super::laid::Laid;
 use super::toasts::Grade;
 use super::view::ClothView;
-use super::worker::{Aim, Building, ClothWorker, Fibres, Phase, PreviewRequest};
+use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest};
 use crate::command_table::{Command, Toward};
 use crate::tokens::{self, Palette};
 
@@ -543,8 +543,9 @@ impl Preview {
 
     /// Whether the picture is of full size and from the full exemplars.
     pub fn has_full_picture(&self) -> bool {
-        let full =
-            |shown: &super::cloth_pane::Shown| shown.full_size && shown.fibres == Fibres::Full;
+        let full = |shown: &super::cloth_pane::Shown| {
+            shown.full_size && shown.fibres == super::worker::Fibres::Full
+        };
         self.pane.shown.as_ref().is_some_and(full)
     }
 
