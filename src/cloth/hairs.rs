@@ -9,6 +9,7 @@ use glam::{Vec2, Vec3};
 
 use super::build::ClothVolume;
 use super::hair_cells::{HairCell, HairCells};
+use crate::design::Yarn;
 use crate::exemplar::hairs::{HairPatch, root_step};
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{Bounds, MajorantWalk, Medium, Ray, SYSTEM, Stretch, Voxel};
@@ -33,6 +34,12 @@ pub struct HairLayer<'a> {
 }
 
 impl<'a> HairLayer<'a> {
+    /// Whether each yarn has hairs.
+    pub fn hairy(yarns: &[Yarn]) -> Vec<bool> {
+        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
+        yarns.iter().map(|yarn| hairs(yarn) >= 0.5).collect()
+    }
+
     /// The hairs of a cloth; `None` when no yarn of it has any.
     pub fn new(cloth: &'a ClothVolume, hairy: Vec<bool>) -> Option<Self> {
         Some(Self::of(cloth, HairLayer::patch(cloth)?, hairy))

@@ -41,4 +41,4 @@ pub use sggx::Fibre;
 pub use stack::Stack;
 pub use still::{Progress, RenderOutcome, render};
 pub use tone::Tone;
-pub use track::{Both, Collision, Nothing, Scatterer};
+pub use track::{Both, Collision, Nothing, SECOND, Scatterer};

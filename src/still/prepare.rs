@@ -10,12 +10,11 @@ use super::part::{roomy, stretch};
 use super::picture::{SwitchedEffects, settings};
 use super::request::StillRequest;
 use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
-use crate::design::{Design, WeavePattern, Yarn};
+use crate::design::{Design, WeavePattern};
 use crate::exemplar::ExemplarStore;
 use crate::exemplar::hairs::HairPatch;
 use crate::job::Job;
 use crate::synthesis::{Catalogue, Stretch};
-use crate::yarn::YarnRecipe;
 
 /// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
 pub struct PreparedCloth {
@@ -88,17 +87,8 @@ impl PreparedCloth {
             return None;
         }
         let patch = self.hairs.get_or_init(|| HairLayer::patch(cloth)).clone()?;
-        Some(HairLayer::of(cloth, patch, self.hairy()))
-    }
-
-    /// Whether each yarn has hairs.
-    fn hairy(&self) -> Vec<bool> {
-        let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
-        self.design
-            .yarns()
-            .iter()
-            .map(|yarn| hairs(yarn) >= 0.5)
-            .collect()
+        let hairy = HairLayer::hairy(self.design.yarns());
+        Some(HairLayer::of(cloth, patch, hairy))
     }
 
     /// The cloth.

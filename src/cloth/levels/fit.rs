@@ -13,11 +13,13 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::series::{KINDS, TERMS, kind, places, terms};
-use crate::cloth::ClothVolume;
 use crate::cloth::colour::{first_ray, path_to};
+use crate::cloth::{ClothVolume, HairLayer};
 use crate::job::{Cancelled, Job};
 use crate::render::path::Tally;
-use crate::render::{Arrival, Counters, PLACE, Random, Ray, RenderSettings, Scatterer, Stack, Sun};
+use crate::render::{
+    Arrival, Both, Counters, PLACE, Random, Ray, RenderSettings, SECOND, Scatterer, Stack, Sun,
+};
 
 /// Elevations of the lamps, degrees, and where each starts its ring of [`AZIMUTHS`], as a
 /// share of a step: all round, straight across and along the yarns, where highlights are
@@ -67,8 +69,13 @@ const TASKS: u32 = 16;
 /// Light below which shadow rays play roulette.
 const SHADOW_ROULETTE: f32 = 0.1;
 /// Numbers of a lamp, a pair of albedos and a side of the weave: of the last yarn (warp,
-/// weft), the kind of place and the order (once, more), by term.
-pub(super) const EACH: usize = 2 * KINDS * 2 * TERMS;
+/// weft), the kind of place and the order (once, more), by term; then light that comes from
+/// hairs, which no gain changes, as a first term.
+pub(super) const EACH: usize = (PLACES + 1) * TERMS;
+/// Last yarns, kinds of place and orders.
+pub(super) const PLACES: usize = 2 * KINDS * 2;
+/// How far above the cloth paths start, mm: over the hairs.
+const OVER_MM: f32 = 4.0;
 const NUMBERS: usize = LAMPS * ALBEDOS.len() * SEEN * EACH;
 
 /// Mean light by lamp, pair of albedos, yarn on top (weft, warp), last yarn (warp, weft),
@@ -85,7 +92,7 @@ const fn place_of(yarn: usize, kind: usize, order: usize) -> usize {
 /// The terms among the numbers of [`EACH`], each with its last yarn, kind of place and
 /// order.
 pub(super) fn by_place(numbers: &[f64]) -> impl Iterator<Item = ([usize; 3], &[f64])> {
-    (numbers.chunks_exact(TERMS).enumerate())
+    (numbers.chunks_exact(TERMS).take(PLACES).enumerate())
         .map(|(place, terms)| ([place / 2 / KINDS, place / 2 % KINDS, place % 2], terms))
 }
 
@@ -135,7 +142,7 @@ struct Terms<'l> {
 impl Tally for Terms<'_> {
     #[inline]
     fn albedo<S: Scatterer>(&self, _: &S, optics: u32) -> Vec3 {
-        let warp = optics & !PLACE < self.warps;
+        let warp = optics & !(PLACE | SECOND) < self.warps;
         Vec3::new(1.0, if warp { MARK } else { 1.0 }, 1.0)
     }
 
@@ -146,9 +153,18 @@ impl Tally for Terms<'_> {
         let Some(lamp) = (self.suns.iter()).position(|sun| sun.towards == arrival.to_light) else {
             return;
         };
-        let (kind, terms) = (kind(arrival).min(KINDS - 1), terms(arrival));
+        let kind = kind(arrival).min(KINDS - 1);
         let yarn = usize::from(arrival.optics & !PLACE >= self.warps);
-        let first = place_of(yarn, kind, usize::from(arrival.order > 1)) * TERMS;
+        let (place, terms) = if arrival.optics & SECOND == 0 {
+            let more = usize::from(arrival.order > 1);
+            (place_of(yarn, kind, more), terms(arrival))
+        } else {
+            (
+                PLACES,
+                std::array::from_fn(|term| f32::from(u8::from(term == 0))),
+            )
+        };
+        let first = place * TERMS;
         let share = if arrival.order > 1 {
             1.0
         } else {
@@ -190,7 +206,7 @@ impl Products {
     const OF: [f32; 3] = [0.5, 0.9, 0.995];
 
     fn none() -> Self {
-        Self(vec![0.0; 2 * KINDS * 2 * SQUARE])
+        Self(vec![0.0; PLACES * SQUARE])
     }
 
     /// Of light from anywhere to anywhere at every kind of place, as no cloth shows all of it.
@@ -245,7 +261,7 @@ impl Products {
 
     /// Products from numbers that were kept; `None` when there are too few or too many.
     pub fn from_values(values: Vec<f64>) -> Option<Self> {
-        (values.len() == 2 * KINDS * 2 * SQUARE).then_some(Self(values))
+        (values.len() == PLACES * SQUARE).then_some(Self(values))
     }
 
     /// The products of each two terms, row by row, each with their last yarn, kind of
@@ -272,6 +288,9 @@ impl Tally for Squares {
 
     #[inline]
     fn add_from<S: Scatterer>(&mut self, _: &S, arrival: &Arrival, light: Vec3) {
+        if arrival.optics & SECOND != 0 {
+            return;
+        }
         let yarn = usize::from(arrival.optics & !PLACE >= self.warps);
         for (sums, albedo) in self.sums.iter_mut().zip(Products::OF) {
             let light = light.x * albedo.powi(arrival.order as i32);
@@ -344,14 +363,35 @@ pub fn lamps() -> [Sun; LAMPS] {
     })
 }
 
-/// Measures the light of a single layer of cloth seen from above, whose yarns below `warps`
-/// are the warp's and whose others are the weft's. Its own colours do not matter.
+/// Measures the light of a single layer of cloth with its hairs, seen from above, whose
+/// yarns below `warps` are the warp's and whose others are the weft's. Its own colours do
+/// not matter.
 ///
 /// # Errors
 /// [`Cancelled`] when the job was.
-pub fn measure(cloth: &ClothVolume, warps: u32, paths: u32, job: &Job) -> Result<Light, Cancelled> {
+pub fn measure(
+    cloth: &ClothVolume,
+    hairs: Option<&HairLayer<'_>>,
+    warps: u32,
+    paths: u32,
+    job: &Job,
+) -> Result<Light, Cancelled> {
+    match hairs {
+        Some(hairs) => measure_all(cloth, &Both(cloth, hairs), warps, paths, job),
+        None => measure_all(cloth, &cloth, warps, paths, job),
+    }
+}
+
+/// Measures anything that `cloth` is a part of.
+fn measure_all<S: Scatterer>(
+    cloth: &ClothVolume,
+    all: &S,
+    warps: u32,
+    paths: u32,
+    job: &Job,
+) -> Result<Light, Cancelled> {
     let slide = RenderSettings::default().backing_slide_mm;
-    let stack = Stack::new(cloth, 1, slide.into());
+    let stack = Stack::new(all, 1, slide.into());
     let suns = lamps();
     let roulette = SHADOW_ROULETTE * LAMPS as f32;
     let long = path_to(&suns, &stack, MOST_ORDERS, roulette);
@@ -373,7 +413,8 @@ pub fn measure(cloth: &ClothVolume, warps: u32, paths: u32, job: &Job) -> Result
                     let mut random = Random::new(11, u64::from(square), u64::from(index));
                     for once in 0..ONCE {
                         let path = if once == 0 { &long } else { &short };
-                        let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
+                        let mut ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
+                        ray.origin.z += OVER_MM;
                         tally.seen = usize::from(warp_on_top(cloth, &ray));
                         path.trace(ray, &mut tally, &mut random, &mut counters);
                     }
@@ -459,7 +500,7 @@ mod tests {
         };
         let prepared =
             still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
-        let of = |warps| measure(prepared.cloth(), warps, 512, &Job::new()).unwrap();
+        let of = |warps| measure(prepared.cloth(), None, warps, 512, &Job::new()).unwrap();
         // Light by pair of albedos, last yarn and order, mean of all lamps.
         let sums = |light: &Light| {
             let mut sums = vec![[[0.0; 2]; 2]; ALBEDOS.len()];
@@ -502,7 +543,7 @@ mod tests {
             assert!(yarn < 2 && kind < KINDS && order < 2);
             all += terms.len();
         }
-        assert_eq!(all, EACH);
+        assert_eq!(all, PLACES * TERMS);
     }
 
     #[test]

@@ -173,7 +173,7 @@ fn row(sums: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
-    use super::super::fit::EACH;
+    use super::super::fit::{EACH, PLACES};
     use super::*;
     use crate::design::Family;
     use crate::render::Random;
@@ -194,7 +194,7 @@ mod tests {
     fn calm() -> Products {
         let square = |i: usize| f64::from(u8::from(i.is_multiple_of(TERMS + 1))) / EACH as f64;
         let square: Vec<f64> = (0..TERMS * TERMS).map(square).collect();
-        Products::from_values(square.repeat(EACH / TERMS)).unwrap()
+        Products::from_values(square.repeat(PLACES)).unwrap()
     }
 
     /// The same light with gains on it, all in one number a lamp.

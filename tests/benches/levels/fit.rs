@@ -8,7 +8,7 @@ use glam::Vec3;
 use pickglass::cloth::levels::fit::{Light, Products, measure, products, transmittance};
 use pickglass::cloth::levels::solve::{Pair, solve};
 use pickglass::cloth::levels::{Gain, LevelCorrection, Sizes};
-use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
+use pickglass::cloth::{ClothSettings, ClothVolume, HairLayer, YarnClasses};
 use pickglass::design::{Design, Family, Grid, YarnId, YarnMap, YarnMaps};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::{atomic, presets};
@@ -91,6 +91,8 @@ struct White {
     cloth: ClothVolume,
     /// Yarns below are the warp's.
     warps: u32,
+    /// Which yarns have hairs.
+    hairy: Vec<bool>,
     ratio: f32,
     sizes: Option<Sizes>,
     family: Family,
@@ -131,6 +133,7 @@ fn white(name: &str, level: u32) -> White {
         sizes: Sizes::of(set),
         family: set.pair.warp.family,
         warps,
+        hairy: HairLayer::hairy(design.yarns()),
         cloth,
     }
 }
@@ -157,7 +160,9 @@ fn light(name: &str, level: u32, white: &White, folder: &Path, paths: u32) -> Li
         let begun = Instant::now();
         let twice = u32::from(level == 0) + u32::from(white.family == Family::Silk);
         let (cloth, paths) = (&white.cloth, paths << twice);
-        let light = measure(cloth, white.warps, paths, &Job::new()).expect("not cancelled");
+        let hairs = HairLayer::new(cloth, white.hairy.clone());
+        let light = measure(cloth, hairs.as_ref(), white.warps, paths, &Job::new());
+        let light = light.expect("not cancelled");
         let through = transmittance(cloth, RAYS, &Job::new()).expect("not cancelled");
         eprintln!(
             "{name} level {level}: {:.2} times as coarse, lets through {through:.4}, {:.0} s",
