@@ -174,6 +174,23 @@ fn openvdb_s_own_programs_take_vdb() {
 }
 
 #[test]
+fn yarns_become_about_as_large_as_was_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, ends, picks) in [("default", 5, 6), ("denim", 40, 30)] {
+        let design = presets::design(name).expect("there").expect("sound");
+        let tubes = tubes(&design, 0..ends, 0..picks).expect("laid");
+        for ending in ["glb", "obj"] {
+            let path = folder.path().join(format!("{name}.{ending}"));
+            let said = yarns::about_bytes(&tubes, &path) as f64;
+            let files = yarns::write(&design, &tubes, &path, &Job::new()).expect("written");
+            let bytes: u64 = files.iter().map(|file| file.1).sum();
+            assert!((said / bytes as f64 - 1.0).abs() < 0.1, "{said} of {bytes}");
+        }
+        assert_eq!(yarns::about_bytes(&tubes, folder.path()), 0);
+    }
+}
+
+#[test]
 fn trimesh_reads_closed_tubes() {
     let Some(python) = python() else {
         return skipped("trimesh");

@@ -43,6 +43,18 @@ pub fn is_yarns(path: &Path) -> bool {
     ending(path).is_some()
 }
 
+/// About how many bytes [`write()`] will write; 0 for a name that is none of its own.
+pub fn about_bytes(tubes: &[YarnTube], path: &Path) -> u64 {
+    let a_point = match ending(path) {
+        // Two triangles a point: numbers of 4 bytes, or words.
+        Some(Ending::Glb) => 49,
+        Some(Ending::Obj) => 79,
+        None => 0,
+    };
+    let points: usize = tubes.iter().map(|tube| tube.skin.len()).sum();
+    a_point * points as u64
+}
+
 #[derive(Clone, Copy)]
 enum Ending {
     Obj,

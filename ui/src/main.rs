@@ -9,6 +9,7 @@ mod command_table;
 mod commands;
 mod opened;
 mod out;
+mod scene;
 mod tokens;
 mod values;
 mod window;

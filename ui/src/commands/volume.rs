@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::volume::{self, Plan, VolumeFormat, bytes_in_words};
+use pickglass::formats::volume::{self, Plan, bytes_in_words};
 use pickglass::formats::yarns;
 use pickglass::job::Job;
 use pickglass::still::{self, StillRequest};
@@ -17,9 +17,7 @@ use super::{check_output, note_warnings};
 use crate::cli::VolumeArgs;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
-
-/// Pixels across the picture of a scene for another renderer.
-const SCENE_WIDTH: u32 = 1280;
+use crate::scene;
 
 pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let path = &args.output.0;
@@ -46,11 +44,7 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let part = if args.face { Part::Face } else { Part::Whole };
     let window = ClothWindow::new(prepared.cloth(), region, part, args.voxels_per_crossing)?;
     let frame = window.frame();
-    let attached = if VolumeFormat::of(path) == Some(VolumeFormat::Vol) {
-        still::scene_files(path, &frame, &framed(request, &frame))?
-    } else {
-        Vec::new()
-    };
+    let attached = scene::beside(path, &frame, &request)?;
     let plan = volume::plan(&window, path, &attached)?;
     out::note(&announcement(&plan, &frame));
     let begun = Instant::now();
@@ -94,19 +88,6 @@ fn region(args: &VolumeArgs, opened: &Opened) -> Region {
     })
 }
 
-/// The request with a picture of the window's own shape.
-fn framed(request: StillRequest, frame: &Frame) -> StillRequest {
-    let shape = f64::from(frame.size.y) / f64::from(frame.size.x);
-    let height = (f64::from(SCENE_WIDTH) * shape)
-        .round()
-        .clamp(1.0, 16_384.0);
-    StillRequest {
-        width: SCENE_WIDTH,
-        height: height as u32,
-        ..request
-    }
-}
-
 fn announcement(plan: &Plan, frame: &Frame) -> String {
     let [x, y, z] = frame.size.to_array();
     let about = if plan.exact { "" } else { "about " };
@@ -147,6 +128,8 @@ fn run_yarns(args: &VolumeArgs, opened: &Opened, region: Region) -> anyhow::Resu
         region.end..last(region.end, region.ends),
         region.pick..last(region.pick, region.picks),
     )?;
+    let about = bytes_in_words(yarns::about_bytes(&tubes, path));
+    out::note(&format!("about {about}: {} yarns", tubes.len()));
     let progress = Progress::new();
     let begun = Instant::now();
     let written = yarns::write(&opened.design, &tubes, path, &interruptible(&progress));

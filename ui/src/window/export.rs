@@ -1,13 +1,12 @@
 //! Exporting a still: how large and how long, where to, and the work on its thread.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use egui::{DragValue, RichText};
 use pickglass::design::Design;
-use pickglass::job::Job;
 
-use super::task::{Outcome, Pace, Task, left};
+use super::task::{Outcome, Running, left};
 use super::toasts::Grade;
 use super::{dialog, icons};
 use crate::tokens::{self, Palette};
@@ -44,8 +43,8 @@ impl Default for Defaults {
 pub struct Export {
     pub defaults: Defaults,
     form: Option<Form>,
-    dialog: Option<Task<Option<PathBuf>>>,
-    work: Option<Work>,
+    browse: dialog::Browse,
+    work: Option<Running<Exported>>,
 }
 
 struct Form {
@@ -104,18 +103,6 @@ fn refined(stop: &Stop, spp: u32, seconds: f64, error: Option<f64>) -> String {
     format!("{spp} spp · {seconds:.0} s{error}{left}")
 }
 
-struct Work {
-    job: Job,
-    progress: Arc<Mutex<String>>,
-    task: Task<Exported>,
-}
-
-impl Drop for Work {
-    fn drop(&mut self) {
-        self.job.cancel();
-    }
-}
-
 impl Export {
     /// Shows the form for the cloth as it is seen now.
     pub fn ask(&mut self, design: Arc<Design>, still: StillRequest) {
@@ -139,34 +126,23 @@ impl Export {
 
     /// What the export under way is at.
     pub fn progress(&self) -> Option<String> {
-        let work = self.work.as_ref()?;
-        let text = work.progress.lock().unwrap_or_else(PoisonError::into_inner);
-        Some(text.clone())
+        self.work.as_ref().map(Running::progress)
     }
 
     /// Cancels the export under way.
     pub fn cancel(&self) {
         if let Some(work) = &self.work {
-            work.job.cancel();
+            work.cancel();
         }
     }
 
     /// Picks up what the threads finished.
     pub fn poll(&mut self) -> Option<Exported> {
-        if let Some(dialog) = &self.dialog {
-            match dialog.poll() {
-                Outcome::Working => {}
-                Outcome::Ready(choice) => {
-                    if let (Some(path), Some(form)) = (choice, &mut self.form) {
-                        form.path = path.display().to_string();
-                        form.wrong = None;
-                    }
-                    self.dialog = None;
-                }
-                Outcome::Lost => self.dialog = None,
-            }
+        if let (Some(path), Some(form)) = (self.browse.poll(), &mut self.form) {
+            form.path = path.display().to_string();
+            form.wrong = None;
         }
-        let done = match self.work.as_ref()?.task.poll() {
+        let done = match self.work.as_ref()?.poll() {
             Outcome::Working => return None,
             Outcome::Ready(done) => done,
             Outcome::Lost => Exported::Failed(
@@ -190,16 +166,9 @@ impl Export {
         match choice {
             Choice::None => {}
             Choice::Close => self.form = None,
-            Choice::Browse if self.dialog.is_none() => {
-                self.dialog = Task::start(ctx, "dialog", || {
-                    rfd::FileDialog::new()
-                        .set_title("Export a still")
-                        .add_filter("Pictures", &["png", "exr"])
-                        .save_file()
-                })
-                .ok();
+            Choice::Browse => {
+                (self.browse).ask(ctx, "Export a still", "Pictures", &["png", "exr"]);
             }
-            Choice::Browse => {}
             Choice::Render => match values::picture_path(form.path.trim()) {
                 Ok(path) => {
                     if let Some(form) = self.form.take() {
@@ -212,25 +181,15 @@ impl Export {
     }
 
     fn begin(&mut self, ctx: &egui::Context, form: Form, path: PathBuf) {
-        let progress = Arc::new(Mutex::new("preparing".to_owned()));
-        let (told, told_ctx) = (Arc::clone(&progress), ctx.clone());
-        let tell = move |text: String| {
-            *told.lock().unwrap_or_else(PoisonError::into_inner) = text;
-            told_ctx.request_repaint();
-        };
-        let (tell_stage, pace) = (tell.clone(), Pace::default());
-        let job = Job::new().with_listener(move |stage, fraction| {
-            tell_stage(pace.told(stage, fraction));
-        });
         let stop = form.stop();
         let mut still = form.still;
         still.height = scaled_height(&still, form.width);
         still.width = form.width;
         still.stop = stop;
-        let (design, work_job) = (form.design, job.clone());
-        let task = Task::start(ctx, "export", move || {
-            let rendered = still::render_still(&design, &still, &work_job, &mut |pass| {
-                tell(refined(&stop, pass.spp, pass.seconds, pass.error));
+        let design = form.design;
+        let work = Running::start(ctx, "export", move |job, teller| {
+            let rendered = still::render_still(&design, &still, job, &mut |pass| {
+                teller.tell(refined(&stop, pass.spp, pass.seconds, pass.error));
             });
             match rendered.and_then(|done| done.save(&path).map(|()| done.report)) {
                 Ok(report) => Exported::Written(path, Box::new(report)),
@@ -238,11 +197,7 @@ impl Export {
                 Err(error) => Exported::Failed(error.to_string()),
             }
         });
-        self.work = task.ok().map(|task| Work {
-            job,
-            progress,
-            task,
-        });
+        self.work = work.ok();
     }
 }
 

@@ -38,7 +38,8 @@ impl App {
                     let selected = (self.draft.selection())
                         .map(|rect| [rect.end, rect.pick, rect.ends, rect.picks]);
                     let path = session.file_name("vdb");
-                    self.volume.ask(session.design(), selected, path);
+                    let shown = self.preview.asked().cloned().unwrap_or_default();
+                    self.volume.ask(session.design(), shown, selected, path);
                 }
             }
             Command::ExportDraft => {

@@ -1,10 +1,12 @@
-//! One piece of work on a thread of its own, whose result the window picks up, and how long
-//! it will still take.
+//! One piece of work on a thread of its own, whose result the window picks up, how far it
+//! is and how long it will still take.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
+
+use pickglass::job::Job;
 
 /// Work under way. Dropping it forgets the result.
 pub struct Task<T> {
@@ -39,7 +41,9 @@ impl<T: Send + 'static> Task<T> {
             })?;
         Ok(Self { result })
     }
+}
 
+impl<T> Task<T> {
     /// Looks without waiting.
     pub fn poll(&self) -> Outcome<T> {
         match self.result.try_recv() {
@@ -47,6 +51,70 @@ impl<T: Send + 'static> Task<T> {
             Err(TryRecvError::Empty) => Outcome::Working,
             Err(TryRecvError::Disconnected) => Outcome::Lost,
         }
+    }
+}
+
+/// Work under way that says how far it is. Dropping it cancels it.
+pub struct Running<T> {
+    job: Job,
+    teller: Teller,
+    task: Task<T>,
+}
+
+/// Says how far a piece of work is, in words, and wakes the window.
+#[derive(Clone)]
+pub struct Teller {
+    ctx: egui::Context,
+    told: Arc<Mutex<String>>,
+}
+
+impl Teller {
+    pub fn tell(&self, text: String) {
+        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = text;
+        self.ctx.request_repaint();
+    }
+}
+
+impl<T: Send + 'static> Running<T> {
+    /// Starts `work`, whose job's stages are told.
+    pub fn start(
+        ctx: &egui::Context,
+        name: &str,
+        work: impl FnOnce(&Job, &Teller) -> T + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let teller = Teller {
+            ctx: ctx.clone(),
+            told: Arc::new(Mutex::new("preparing".to_owned())),
+        };
+        let (stages, pace) = (teller.clone(), Pace::default());
+        let job = Job::new()
+            .with_listener(move |stage, fraction| stages.tell(pace.told(stage, fraction)));
+        let (own_job, own_teller) = (job.clone(), teller.clone());
+        let task = Task::start(ctx, name, move || work(&own_job, &own_teller))?;
+        Ok(Self { job, teller, task })
+    }
+}
+
+impl<T> Running<T> {
+    /// How far it is.
+    pub fn progress(&self) -> String {
+        let told = self.teller.told.lock();
+        told.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    pub fn cancel(&self) {
+        self.job.cancel();
+    }
+
+    /// Looks without waiting.
+    pub fn poll(&self) -> Outcome<T> {
+        self.task.poll()
+    }
+}
+
+impl<T> Drop for Running<T> {
+    fn drop(&mut self) {
+        self.cancel();
     }
 }
 

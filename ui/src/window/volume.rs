@@ -2,24 +2,29 @@
 //! and nothing is written before the person has seen them.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use egui::{DragValue, RichText};
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::design::Design;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume::{self, VolumeFileError, bytes_in_words};
+use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
 use pickglass::still::{self, PreparedCloth, StillRequest};
 use pickglass::volume::source::VoxelSource;
+use pickglass::yarn::tubes::{YarnTube, tubes};
 
-use super::task::{Outcome, Pace, Task};
+use super::task::{Outcome, Running};
 use super::toasts::Grade;
 use super::{dialog, icons};
 use crate::tokens::{self, Palette};
+use crate::{scene, values};
 
 /// Crossings along the side of the window that is proposed where nothing is selected.
 const PROPOSED: u32 = 16;
+/// The coarsest level of the cloth.
+const COARSEST: u32 = 4;
 
 /// What became of an export.
 pub enum Exported {
@@ -32,6 +37,8 @@ pub enum Exported {
 #[derive(Debug, Clone, PartialEq)]
 struct Wanted {
     region: [u32; 4],
+    part: Part,
+    level: u32,
     /// 0 = as fine as the cloth's own.
     voxels_a_crossing: u32,
     path: String,
@@ -48,42 +55,64 @@ impl Wanted {
             picks,
         }
     }
+
+    fn path(&self) -> Result<PathBuf, String> {
+        values::volume_path(self.path.trim()).map(|path| path.0)
+    }
+
+    /// The cloth of it, of a picture like this one.
+    fn request(&self, shown: &StillRequest) -> StillRequest {
+        StillRequest {
+            view: shown.view,
+            eye: shown.eye,
+            light: shown.light.clone(),
+            exposure_ev: shown.exposure_ev,
+            seed: shown.seed,
+            colourway: shown.colourway.clone(),
+            dials: vec![("level".to_owned(), self.level.to_string())],
+            ..StillRequest::default()
+        }
+    }
 }
 
-type Planned = Result<(Arc<PreparedCloth>, String), String>;
+/// What is written: voxels of a cloth, or yarns of a design.
+#[derive(Clone)]
+enum Made {
+    Cloth(Arc<PreparedCloth>),
+    Yarns(Arc<Design>, Arc<[YarnTube]>),
+}
+
+/// What was made to be written, and how large it will be.
+type Planned = Result<(Made, String), String>;
 
 struct Form {
     design: Arc<Design>,
+    /// How the cloth is shown now.
+    shown: StillRequest,
     wanted: Wanted,
-    cloth: Option<Arc<PreparedCloth>>,
-    planning: Option<(Wanted, Job, Task<Planned>)>,
-    /// What was planned, and how large it will be.
-    planned: Option<(Wanted, Result<String, String>)>,
-}
-
-struct Work {
-    job: Job,
-    progress: Arc<Mutex<String>>,
-    task: Task<Exported>,
+    /// Cloth that was made, and its level.
+    cloth: Option<(u32, Arc<PreparedCloth>)>,
+    planning: Option<(Wanted, Running<Planned>)>,
+    planned: Option<(Wanted, Planned)>,
 }
 
 /// The form and the export under way. Dropping it cancels both.
 #[derive(Default)]
 pub struct VolumeExport {
     form: Option<Form>,
-    work: Option<Work>,
-}
-
-impl Drop for VolumeExport {
-    fn drop(&mut self) {
-        self.cancel();
-        self.close();
-    }
+    browse: dialog::Browse,
+    work: Option<Running<Exported>>,
 }
 
 impl VolumeExport {
     /// Shows the form; `selected` = first end and pick from 0, ends and picks.
-    pub fn ask(&mut self, design: Arc<Design>, selected: Option<[u32; 4]>, path: String) {
+    pub fn ask(
+        &mut self,
+        design: Arc<Design>,
+        shown: StillRequest,
+        selected: Option<[u32; 4]>,
+        path: String,
+    ) {
         let [end, pick, ends, picks] = selected.unwrap_or([
             0,
             0,
@@ -92,8 +121,11 @@ impl VolumeExport {
         ]);
         self.form = Some(Form {
             design,
+            shown,
             wanted: Wanted {
                 region: [end + 1, pick + 1, ends, picks],
+                part: Part::Whole,
+                level: 0,
                 voxels_a_crossing: 0,
                 path,
             },
@@ -105,30 +137,26 @@ impl VolumeExport {
 
     /// What the export under way is at.
     pub fn progress(&self) -> Option<String> {
-        let work = self.work.as_ref()?;
-        let text = work.progress.lock().unwrap_or_else(PoisonError::into_inner);
-        Some(text.clone())
+        self.work.as_ref().map(Running::progress)
     }
 
     /// Cancels the export under way.
     pub fn cancel(&self) {
         if let Some(work) = &self.work {
-            work.job.cancel();
-        }
-    }
-
-    fn close(&mut self) {
-        if let Some((_, job, _)) = self.form.take().and_then(|form| form.planning) {
-            job.cancel();
+            work.cancel();
         }
     }
 
     /// Picks up what the threads finished.
     pub fn poll(&mut self) -> Option<Exported> {
+        let chosen = self.browse.poll();
         if let Some(form) = &mut self.form {
+            if let Some(path) = chosen {
+                form.wanted.path = path.display().to_string();
+            }
             form.poll();
         }
-        let done = match self.work.as_ref()?.task.poll() {
+        let done = match self.work.as_ref()?.poll() {
             Outcome::Working => return None,
             Outcome::Ready(done) => done,
             Outcome::Lost => Exported::Failed(
@@ -150,91 +178,74 @@ impl VolumeExport {
             choice = Some(Choice::Close);
         }
         match choice {
-            Some(Choice::Close) => self.close(),
+            Some(Choice::Close) => self.form = None,
+            Some(Choice::Browse) => (self.browse).ask(
+                ctx,
+                "Export a volume",
+                "Volumes and yarns",
+                &["vol", "vdb", "nrrd", "mhd", "tif", "obj", "glb"],
+            ),
             Some(Choice::Plan) => form.plan(ctx),
             Some(Choice::Write) => {
                 if let Some(form) = self.form.take()
-                    && let Some(cloth) = form.cloth
+                    && let Some((wanted, Ok((made, _)))) = form.planned
                 {
-                    self.begin(ctx, cloth, form.wanted);
+                    let request = wanted.request(&form.shown);
+                    let work = Running::start(ctx, "volume", move |job, _| {
+                        write(&made, &wanted, &request, job)
+                    });
+                    self.work = work.ok();
                 }
             }
             None => {}
         }
     }
-
-    fn begin(&mut self, ctx: &egui::Context, cloth: Arc<PreparedCloth>, wanted: Wanted) {
-        let progress = Arc::new(Mutex::new("preparing".to_owned()));
-        let (told, told_ctx) = (Arc::clone(&progress), ctx.clone());
-        let pace = Pace::default();
-        let job = Job::new().with_listener(move |stage, fraction| {
-            *told.lock().unwrap_or_else(PoisonError::into_inner) = pace.told(stage, fraction);
-            told_ctx.request_repaint();
-        });
-        let work_job = job.clone();
-        let work = move || write(&cloth, &wanted, &work_job);
-        self.work = Task::start(ctx, "volume", work).ok().map(|task| Work {
-            job,
-            progress,
-            task,
-        });
-    }
 }
 
 enum Choice {
     Close,
+    Browse,
     Plan,
     Write,
 }
 
 impl Form {
     fn poll(&mut self) {
-        let Some((_, _, task)) = &self.planning else {
+        let Some((_, work)) = &self.planning else {
             return;
         };
-        let planned = match task.poll() {
+        let planned = match work.poll() {
             Outcome::Working => return,
             Outcome::Ready(planned) => planned,
             Outcome::Lost => Err("planning failed unexpectedly: try fewer crossings".to_owned()),
         };
-        if let Some((wanted, _, _)) = self.planning.take() {
-            let planned = planned.map(|(cloth, text)| {
-                self.cloth = Some(cloth);
-                text
-            });
+        if let Some((wanted, _)) = self.planning.take() {
+            if let Ok((Made::Cloth(cloth), _)) = &planned {
+                self.cloth = Some((wanted.level, Arc::clone(cloth)));
+            }
             self.planned = Some((wanted, planned));
         }
     }
 
-    /// Has the cloth made and the bytes counted, on a thread.
+    /// Has what is to be written made and its bytes counted, on a thread.
     fn plan(&mut self, ctx: &egui::Context) {
         if self.planning.is_some() {
             return;
         }
-        let (design, wanted, cloth) = (
-            Arc::clone(&self.design),
-            self.wanted.clone(),
-            self.cloth.clone(),
-        );
-        let job = Job::new();
-        let (asked, work_job) = (self.wanted.clone(), job.clone());
-        let work = move || {
-            // Of a very large design only the region is made into cloth.
-            let request = StillRequest::default().over(&design, &wanted.region());
-            let cloth = match cloth {
-                Some(cloth) if cloth.covers(&request) => cloth,
-                _ => {
-                    let store = ExemplarStore::user();
-                    let prepared = still::prepare(&design, &request, &store, &work_job);
-                    Arc::new(prepared.map_err(|error| error.to_string())?)
-                }
-            };
-            let text = plan(&cloth, &wanted)?;
-            Ok((cloth, text))
-        };
-        self.planning = Task::start(ctx, "volume plan", work)
-            .ok()
-            .map(|task| (asked, job, task));
+        let (design, wanted) = (Arc::clone(&self.design), self.wanted.clone());
+        let request = wanted.request(&self.shown);
+        let known = (self.cloth.as_ref())
+            .filter(|(level, _)| *level == wanted.level)
+            .map(|(_, cloth)| Arc::clone(cloth));
+        let asked = wanted.clone();
+        let work = Running::start(ctx, "volume plan", move |job, _| {
+            if yarns::is_yarns(&asked.path()?) {
+                plan_yarns(&design, &asked)
+            } else {
+                plan(&design, known, &asked, request, job)
+            }
+        });
+        self.planning = work.ok().map(|work| (wanted, work));
     }
 
     fn ui(&mut self, ui: &mut egui::Ui) -> Option<Choice> {
@@ -242,7 +253,8 @@ impl Form {
         let palette = Palette::current(ui);
         let mut choice = None;
         ui.label(RichText::new("Export volume").text_style(egui::TextStyle::Heading));
-        let what = "Voxels of a window of the cloth: .vol .vdb .nrrd .mhd .tif";
+        let what = "Of a window of the cloth the voxels, .vol .vdb .nrrd .mhd .tif, or the yarns, \
+                    .obj .glb. A .vol gets a scene for Mitsuba.";
         ui.label(RichText::new(what).color(palette.quiet));
         ui.add_space(tokens::GAP);
         egui::Grid::new("volume form")
@@ -264,9 +276,24 @@ impl Form {
                 ui.add(DragValue::new(count).range(0..=256).custom_formatter(own))
                     .labelled_by(label.id);
                 ui.end_row();
-                let label = ui.label("File");
-                ui.add(egui::TextEdit::singleline(&mut self.wanted.path))
+                let label = ui.label("Level: each is half as fine");
+                ui.add(DragValue::new(&mut self.wanted.level).range(0..=COARSEST))
                     .labelled_by(label.id);
+                ui.end_row();
+                ui.label("Thickness");
+                ui.horizontal(|ui| {
+                    ui.radio_value(&mut self.wanted.part, Part::Whole, "whole");
+                    ui.radio_value(&mut self.wanted.part, Part::Face, "face alone");
+                });
+                ui.end_row();
+                let label = ui.label("File");
+                ui.horizontal(|ui| {
+                    ui.add(egui::TextEdit::singleline(&mut self.wanted.path))
+                        .labelled_by(label.id);
+                    if ui.button("Browse…").clicked() {
+                        choice = Some(Choice::Browse);
+                    }
+                });
                 ui.end_row();
             });
         ui.add_space(tokens::GAP);
@@ -277,10 +304,10 @@ impl Form {
             _ if self.planning.is_some() => {
                 ui.horizontal(|ui| {
                     ui.spinner();
-                    ui.label("Making the cloth and counting bytes");
+                    ui.label("Making it and counting bytes");
                 });
             }
-            Some(Ok(text)) => {
+            Some(Ok((_, text))) => {
                 ui.label(text);
             }
             Some(Err(wrong)) => {
@@ -313,44 +340,111 @@ impl Form {
     }
 }
 
-fn window<'c>(cloth: &'c PreparedCloth, wanted: &Wanted) -> Result<ClothWindow<'c>, String> {
-    let fine = (wanted.voxels_a_crossing > 0).then_some(wanted.voxels_a_crossing);
-    ClothWindow::new(cloth.cloth(), wanted.region(), Part::Whole, fine)
-        .map_err(|error| error.to_string())
-}
-
-/// What writing would come to, in words.
-fn plan(cloth: &PreparedCloth, wanted: &Wanted) -> Result<String, String> {
-    let window = window(cloth, wanted)?;
-    let plan = volume::plan(&window, Path::new(wanted.path.trim()), &[])
-        .map_err(|error| error.to_string())?;
-    let frame = window.frame();
+/// Makes the cloth, unless the known one will do, and says what writing it comes to.
+fn plan(
+    design: &Arc<Design>,
+    known: Option<Arc<PreparedCloth>>,
+    wanted: &Wanted,
+    request: StillRequest,
+    job: &Job,
+) -> Planned {
+    // Of a very large design only the region is made into cloth.
+    let over = request.clone().over(design, &wanted.region());
+    let cloth = match known {
+        Some(cloth) if cloth.covers(&over) => cloth,
+        _ => {
+            let prepared = still::prepare(design, &over, &ExemplarStore::user(), job);
+            Arc::new(prepared.map_err(|error| error.to_string())?)
+        }
+    };
+    let window = window(&cloth, wanted)?;
+    let (path, frame) = (wanted.path()?, window.frame());
+    let attached = scene::beside(&path, &frame, &request).map_err(|error| error.to_string())?;
+    let plan = volume::plan(&window, &path, &attached).map_err(|error| error.to_string())?;
     let [x, y, z] = frame.size.to_array();
     let about = if plan.exact { "" } else { "about " };
-    Ok(format!(
+    let text = format!(
         "{about}{}: {x} × {y} × {z} voxels of {:.1} µm, about {:.0} s",
         bytes_in_words(plan.bytes()),
         frame.edge_mm * 1e3,
         plan.seconds.ceil(),
-    ))
+    );
+    Ok((Made::Cloth(cloth), text))
 }
 
-fn write(cloth: &PreparedCloth, wanted: &Wanted, job: &Job) -> Exported {
-    let path = PathBuf::from(wanted.path.trim());
-    let window = match window(cloth, wanted) {
-        Ok(window) => window,
-        Err(error) => return Exported::Failed(error),
-    };
-    match volume::write(&window, &path, &[], job) {
-        Ok(written) => Exported::Written {
-            path,
+fn plan_yarns(design: &Arc<Design>, wanted: &Wanted) -> Planned {
+    let Region {
+        end,
+        pick,
+        ends,
+        picks,
+    } = wanted.region();
+    let made = tubes(
+        design,
+        end..end + i64::from(ends),
+        pick..pick + i64::from(picks),
+    );
+    let tubes = made.map_err(|error| error.to_string())?;
+    let bytes = bytes_in_words(yarns::about_bytes(&tubes, &wanted.path()?));
+    let text = format!("about {bytes}: {} yarns", tubes.len());
+    Ok((Made::Yarns(Arc::clone(design), tubes.into()), text))
+}
+
+fn window<'c>(cloth: &'c PreparedCloth, wanted: &Wanted) -> Result<ClothWindow<'c>, String> {
+    let fine = (wanted.voxels_a_crossing > 0).then_some(wanted.voxels_a_crossing);
+    ClothWindow::new(cloth.cloth(), wanted.region(), wanted.part, fine)
+        .map_err(|error| error.to_string())
+}
+
+/// Writes what was planned; all files or none.
+fn write(made: &Made, wanted: &Wanted, request: &StillRequest, job: &Job) -> Exported {
+    let written = wanted.path().and_then(|path| match made {
+        Made::Cloth(cloth) => write_voxels(cloth, wanted, &path, request, job),
+        Made::Yarns(design, tubes) => write_yarns(design, tubes, &path, job),
+    });
+    written.unwrap_or_else(Exported::Failed)
+}
+
+fn write_voxels(
+    cloth: &PreparedCloth,
+    wanted: &Wanted,
+    path: &Path,
+    request: &StillRequest,
+    job: &Job,
+) -> Result<Exported, String> {
+    let window = window(cloth, wanted)?;
+    let attached = scene::beside(path, &window.frame(), request);
+    let attached = attached.map_err(|error| error.to_string())?;
+    match volume::write(&window, path, &attached, job) {
+        Ok(written) => Ok(Exported::Written {
+            path: path.to_owned(),
             about: format!(
                 "{} voxels, {}",
                 written.voxels,
                 bytes_in_words(written.bytes)
             ),
-        },
-        Err(VolumeFileError::Cancelled(_)) => Exported::Cancelled,
-        Err(error) => Exported::Failed(error.to_string()),
+        }),
+        Err(VolumeFileError::Cancelled(_)) => Ok(Exported::Cancelled),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn write_yarns(
+    design: &Design,
+    tubes: &[YarnTube],
+    path: &Path,
+    job: &Job,
+) -> Result<Exported, String> {
+    match yarns::write(design, tubes, path, job) {
+        Ok(files) => Ok(Exported::Written {
+            path: path.to_owned(),
+            about: format!(
+                "{} yarns, {}",
+                tubes.len(),
+                bytes_in_words(files.iter().map(|file| file.1).sum())
+            ),
+        }),
+        Err(YarnsError::Cancelled(_)) => Ok(Exported::Cancelled),
+        Err(error) => Err(error.to_string()),
     }
 }

@@ -268,6 +268,55 @@ fn a_volume_says_its_bytes_before_it_is_written() {
     assert!(x >= 24 && y >= 32 && z > 4, "{sizes:?}");
 }
 
+/// Voxels of a `.vol` along x, y and z.
+fn vol_size(path: &std::path::Path) -> [i32; 3] {
+    let bytes = std::fs::read(path).expect("a file");
+    assert!(bytes.starts_with(b"VOL\x03"));
+    [8, 12, 16].map(|at| {
+        let four = bytes[at..at + 4].try_into().expect("four bytes");
+        i32::from_le_bytes(four)
+    })
+}
+
+#[test]
+fn yarns_the_face_alone_and_coarse_levels_are_exported_as_well() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = window(Some("oxford"));
+    // Shows the form, fills it in, counts and writes.
+    let export = |window: &mut Window, name: &str, level: &str, part: &str| {
+        let path = folder.path().join(name);
+        command(window, "export volume");
+        type_number(window, "Ends", "3");
+        type_number(window, "Picks", "2");
+        type_number(window, "Level: each is half as fine", level);
+        window.get_by_label(part).click();
+        window.run_steps(3);
+        type_text(window, "File", &path.display().to_string());
+        window.get_by_label("Count the bytes").click();
+        wait_for(window, "the bytes", |window| shows(window, "Write"));
+        let yarns = name.ends_with(".glb");
+        assert_eq!(says(window, ": 5 yarns"), yarns);
+        assert_eq!(says(window, " voxels of "), !yarns);
+        window.get_by_label("Write").click();
+        let wrote = format!("Wrote {}", path.display());
+        wait_for(window, "the file", |window| says(window, &wrote));
+        path
+    };
+    let tubes = export(&mut window, "yarns.glb", "0", "whole");
+    assert!(std::fs::read(tubes).expect("a file").starts_with(b"glTF"));
+    let sizes = [("whole", "0"), ("face alone", "0"), ("whole", "2")].map(|(part, level)| {
+        let name = format!("{}{level}.vol", part.replace(' ', "-"));
+        let path = export(&mut window, &name, level, part);
+        // With a scene that names it.
+        let scene = std::fs::read_to_string(path.with_extension("xml")).expect("a scene");
+        assert!(scene.contains(&name) && path.with_extension("py").exists());
+        vol_size(&path)
+    });
+    let [whole, face, coarse] = sizes;
+    assert!(whole[2] > face[2] && whole[..2] == face[..2], "{sizes:?}");
+    assert!((0..3).all(|axis| coarse[axis] < whole[axis]), "{sizes:?}");
+}
+
 /// The mean of red less blue over the picture of the cloth.
 fn warmth(window: &Window) -> Option<f64> {
     let shown = window.state().preview.pane.shown.as_ref()?;
