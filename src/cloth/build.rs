@@ -131,17 +131,30 @@ fn recipe_of(yarn: &Yarn) -> YarnRecipe {
     YarnRecipe::family(yarn.family, quantise(yarn.diameter()))
 }
 
-/// How the voxels of each set's warp and weft are read, and the gains of their light: each
-/// pair once, by the number that the voxels name.
-fn matter(
+/// How the voxels of all sets are read.
+struct Corrected {
+    /// Of each set's warp and weft.
+    matter: Arc<[[Matter; 2]]>,
+    /// The gains of their light: each pair once, by the number that the voxels name.
+    gains: Vec<[Gain; 2]>,
+    /// The largest residual of all corrections; `None` where a set has none.
+    light_error: Option<f32>,
+}
+
+fn corrected(
     sets: &[Arc<ExemplarSet>],
     of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
-) -> (Arc<[[Matter; 2]]>, Vec<[Gain; 2]>) {
+) -> Corrected {
     let mut gains: Vec<[Gain; 2]> = Vec::new();
+    let mut light_error = Some(0.0f32);
     let matter = (sets.iter())
         .map(|set| {
             let recipes = [&set.pair.warp, &set.pair.weft];
             let found = recipes.map(|recipe| of(recipe.family, set));
+            for own in &found {
+                let residual = own.as_ref().and_then(|own| own.residual);
+                light_error = light_error.zip(residual).map(|(worst, own)| worst.max(own));
+            }
             let pair = [0, 1].map(|yarn| {
                 let own = found[yarn].as_ref().map(|found| found.gains[yarn].clone());
                 own.unwrap_or(Gain::NONE)
@@ -163,18 +176,11 @@ fn matter(
         })
         .collect();
     gains.truncate(series::UNCORRECTED);
-    (matter, gains)
-}
-
-/// The largest residual of the corrections of all sets; `None` where one has none.
-fn light_error(
-    sets: &[Arc<ExemplarSet>],
-    of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
-) -> Option<f32> {
-    let recipes = (sets.iter()).flat_map(|set| [&set.pair.warp, &set.pair.weft].map(|r| (r, set)));
-    recipes
-        .map(|(recipe, set)| of(recipe.family, set)?.residual)
-        .try_fold(0.0f32, |worst, residual| Some(worst.max(residual?)))
+    Corrected {
+        matter,
+        gains,
+        light_error,
+    }
 }
 
 /// SGGX roughness of a yarn's fibres.
@@ -313,11 +319,14 @@ impl ClothVolume {
         let correction = |family, set: &ExemplarSet| {
             (settings.correct_levels).then(|| LevelCorrection::of(family, set))?
         };
-        let light_error = light_error(&sets, correction);
-        let (matter, gains) = matter(&sets, correction);
-        let corrected = settings.correct_levels && grid.level > 0;
+        let Corrected {
+            matter,
+            gains,
+            light_error,
+        } = corrected(&sets, correction);
+        let has_places = settings.correct_levels && grid.level > 0;
         let places = (0..catalogue.blocks() as u16)
-            .filter(|_| corrected)
+            .filter(|_| has_places)
             .map(|block| series::places(catalogue.key(block)))
             .collect();
         Ok(Self {
@@ -407,8 +416,9 @@ impl ClothVolume {
         of: impl Fn(Family, &ExemplarSet) -> Option<LevelCorrection>,
     ) -> Self {
         if self.grid.level > 0 {
-            self.light_error = light_error(&self.sets, &of);
-            (self.matter, self.gains) = matter(&self.sets, of);
+            let found = corrected(&self.sets, of);
+            (self.matter, self.gains) = (found.matter, found.gains);
+            self.light_error = found.light_error;
         }
         self
     }

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 use super::build::ClothVolume;
 use super::hair_cells::{HairCell, HairCells};
 use crate::design::Yarn;
-use crate::exemplar::hairs::{HairPatch, root_step};
+use crate::exemplar::hairs::{HAIRLESS, HairPatch, root_step};
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{Bounds, MajorantWalk, Medium, Ray, SYSTEM, Stretch, Voxel};
 use crate::yarn::{WeaveGeometry, YarnRecipe};
@@ -37,7 +37,7 @@ impl<'a> HairLayer<'a> {
     /// Whether each yarn has hairs.
     pub fn hairy(yarns: &[Yarn]) -> Vec<bool> {
         let hairs = |yarn: &Yarn| YarnRecipe::family(yarn.family, yarn.diameter()).hairs_per_mm;
-        yarns.iter().map(|yarn| hairs(yarn) >= 0.5).collect()
+        yarns.iter().map(|yarn| hairs(yarn) >= HAIRLESS).collect()
     }
 
     /// The hairs of a cloth; `None` when no yarn of it has any.

@@ -13,7 +13,7 @@ use crate::yarn::{Direction, YarnRecipe, hash, unit};
 /// Crossings along a side of the patch.
 pub const PATCH: usize = 16;
 /// Hairs a mm below which a yarn has none.
-const HAIRLESS: f32 = 0.5;
+pub(crate) const HAIRLESS: f32 = 0.5;
 /// Most voxels along a side of the patch.
 const MOST_VOXELS: usize = 1024;
 

@@ -17,9 +17,10 @@
 //!   light scattered once and one for the rest (see [`series`]). How often it was
 //!   counts most: averaging brightens light that is scattered a few times and not what is
 //!   scattered often, so dark yarns err more than pale ones. Each *kind of block* has
-//!   factors of its own for that, and warp and weft have a gain each: where one of them is
-//!   nearly black, all light is the other's. Averaged voxels also pass more light from the
-//!   one to the other: light that both scattered has terms of its own.
+//!   factors of its own for that, and for the side that the light comes from; and warp and
+//!   weft have a gain each: where one of them is nearly black, all light is the other's.
+//!   Averaged voxels also pass more light from the one to the other: light that both
+//!   scattered has terms of its own.
 //!
 //! The first two hold for a family. The gain hangs on how the yarns lie: highlights of
 //! silk come from slopes that differ from sett to sett, and the gain of one is no gain for
