@@ -2,11 +2,12 @@
 //!
 //! `cargo bench --bench levels` prints the time to build the exemplars of each level, and
 //! mean radiance (with the standard error of the difference) and coverage of the cloth
-//! against level 0, six designs under four lights, with the correction and without it (`-- NAME` for some designs alone, `--spp N` for
-//! less noise, `--corrected` without the rows of averaging alone). `-- --fit DIR`
-//! measures the corrections, keeping what is measured in a folder, and prints the table;
-//! `-- --fit DIR --write` puts it in the place of `presets/levels.ron`; `--paths N` takes
-//! more of them for what is not kept yet. Nothing is asserted.
+//! against level 0, six designs under four lights, with the correction and without it
+//! (`-- NAME` for some designs or lights alone, `--spp N` for less noise, `--corrected` without the
+//! rows of averaging alone). `-- --fit DIR` measures the corrections, keeping what is
+//! measured in a folder, and prints the table; `-- --fit DIR --write` puts it in the place
+//! of `presets/levels.ron`; `--paths N` takes more of them for what is not kept yet; with
+//! names of presets the table has those alone, and is not written. Nothing is asserted.
 
 #[path = "levels/fit.rs"]
 mod fit;
@@ -67,7 +68,7 @@ struct Measured {
 }
 
 /// Makes a design at a level and looks at it under each light.
-fn measured(name: &str, level: u32, corrected: bool, spp: u32) -> Measured {
+fn measured(name: &str, level: u32, corrected: bool, lights: &[&str], spp: u32) -> Measured {
     let design = Arc::new(presets::design(name).expect("there").expect("sound"));
     let switch = if corrected { "on" } else { "off" };
     let request = StillRequest {
@@ -100,27 +101,32 @@ fn measured(name: &str, level: u32, corrected: bool, spp: u32) -> Measured {
     Measured {
         seconds,
         block: cloth.cloth().sets()[0].grid.block,
-        shown: LIGHTS.iter().map(under).collect(),
+        shown: lights.iter().map(under).collect(),
     }
 }
 
 /// Prints what the levels of the chosen designs do to light. Small blocks have no voxels
 /// coarser than eight a side: there level 4 is level 3.
 fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
+    let is_chosen = |name: &&str| chosen.iter().any(|word| word == name);
+    // What is not named at all is looked at as a whole.
+    let of = |all: &[&'static str]| -> Vec<&'static str> {
+        let some: Vec<_> = all.iter().copied().filter(is_chosen).collect();
+        if some.is_empty() { all.to_vec() } else { some }
+    };
+    let (designs, lights) = (of(&DESIGNS), of(&LIGHTS));
     println!(
         "mean radiance against level 0 ± its standard error (and difference of coverage): \
-         {LIGHTS:?}, {spp} spp"
+         {lights:?}, {spp} spp"
     );
     let mut worst = [0.0f64; 2];
-    for name in DESIGNS {
-        if !chosen.is_empty() && !chosen.iter().any(|word| word == name) {
-            continue;
-        }
-        let fine = measured(name, 0, false, spp);
+    for name in designs {
+        let measured = |level, corrected| measured(name, level, corrected, &lights, spp);
+        let fine = measured(0, false);
         println!("{name:12} level 0  built in {:5.2} s", fine.seconds);
         let mut last = fine.block;
         for level in 1..=4 {
-            let coarse = measured(name, level, true, spp);
+            let coarse = measured(level, true);
             if coarse.block == last {
                 println!("{name:12} level {level} is level {}", level - 1);
                 continue;
@@ -128,7 +134,7 @@ fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
             last = coarse.block;
             let mut both = vec![("corrected", coarse)];
             if !corrected_alone {
-                both.insert(0, ("averaged", measured(name, level, false, spp)));
+                both.insert(0, ("averaged", measured(level, false)));
             }
             for (way, coarse) in &both {
                 let pairs = || fine.shown.iter().zip(&coarse.shown);
@@ -172,8 +178,16 @@ fn main() {
         let kept = words
             .get(place + 1)
             .map_or("levels-measured", String::as_str);
-        let table = fit::table(Path::new(kept), number("--paths").unwrap_or(fit::PATHS));
-        if words.iter().any(|word| word == "--write") {
+        let mut names: Vec<&str> = (presets::names())
+            .filter(|name| words.iter().any(|word| word == name))
+            .collect();
+        let all = names.is_empty();
+        if all {
+            names.extend(presets::names());
+        }
+        let paths = number("--paths").unwrap_or(fit::PATHS);
+        let table = fit::table(&names, Path::new(kept), paths);
+        if all && words.iter().any(|word| word == "--write") {
             let preset = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/levels.ron");
             atomic::write(&preset, table.as_bytes()).expect("the preset is written");
         } else {
@@ -182,9 +196,6 @@ fn main() {
     } else {
         let spp = number("--spp").unwrap_or(SPP);
         let alone = words.iter().any(|word| word == "--corrected");
-        let chosen: Vec<String> = (words.into_iter())
-            .filter(|word| DESIGNS.contains(&word.as_str()))
-            .collect();
-        compare(&chosen, spp, alone);
+        compare(&words, spp, alone);
     }
 }

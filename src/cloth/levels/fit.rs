@@ -61,7 +61,7 @@ const MARK: f32 = 0.98;
 /// Light of higher order is left out, from both sides of the comparison.
 const MOST_ORDERS: u32 = 192;
 /// Paths that follow light scattered once, for each that follows all.
-const ONCE: u32 = 3;
+const ONCE: u32 = 12;
 /// Starts of paths along a side of a square that is followed at once.
 const ROW: u32 = 16;
 /// Tasks of a measurement: each follows every so many squares.
@@ -74,8 +74,6 @@ const SHADOW_ROULETTE: f32 = 0.1;
 pub(super) const EACH: usize = (PLACES + 1) * TERMS;
 /// Last yarns, kinds of place and orders.
 pub(super) const PLACES: usize = 2 * KINDS * 2;
-/// How far above the cloth paths start, mm: over the hairs.
-const OVER_MM: f32 = 4.0;
 const NUMBERS: usize = LAMPS * ALBEDOS.len() * SEEN * EACH;
 
 /// Mean light by lamp, pair of albedos, yarn on top (weft, warp), last yarn (warp, weft),
@@ -313,25 +311,21 @@ pub fn products(
     let stack = Stack::new(cloth, 1, slide.into());
     let suns = lamps();
     let path = path_to(&suns, &stack, MOST_ORDERS, SHADOW_ROULETTE * LAMPS as f32);
-    let parts: Vec<Squares> = (0..TASKS)
-        .into_par_iter()
-        .map(|task| {
-            let mut tally = Squares {
-                warps,
-                sums: std::array::from_fn(|_| Products::none()),
-            };
-            let mut counters = Counters::default();
-            for square in (task..paths.div_ceil(ROW * ROW)).step_by(TASKS as usize) {
-                job.check()?;
-                for index in 0..ROW * ROW {
-                    let mut random = Random::new(13, u64::from(square), u64::from(index));
-                    let ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
-                    path.trace(ray, &mut tally, &mut random, &mut counters);
-                }
-            }
-            Ok(tally)
-        })
-        .collect::<Result<_, Cancelled>>()?;
+    let top = cloth.height_range().1;
+    let none = || Squares {
+        warps,
+        sums: std::array::from_fn(|_| Products::none()),
+    };
+    let parts = squares(
+        13,
+        paths.div_ceil(ROW * ROW),
+        none,
+        job,
+        |tally, index, random| {
+            let ray = first_ray(cloth, top, ROW, index, Vec3::NEG_Z, random);
+            path.trace(ray, tally, random, &mut Counters::default());
+        },
+    )?;
     // Each albedo counts alike, however much light it shows.
     let mut mean = Products::none();
     for albedo in 0..Products::OF.len() {
@@ -396,41 +390,54 @@ fn measure_all<S: Scatterer>(
     let roulette = SHADOW_ROULETTE * LAMPS as f32;
     let long = path_to(&suns, &stack, MOST_ORDERS, roulette);
     let short = path_to(&suns, &stack, 1, 0.3 * roulette);
-    let squares = paths.div_ceil(ROW * ROW).max(2);
-    let parts: Vec<Light> = (0..TASKS)
-        .into_par_iter()
-        .map(|task| {
-            let mut tally = Terms {
-                suns: &suns,
-                warps,
-                seen: 0,
-                sums: Light::dark(),
-            };
-            let mut counters = Counters::default();
-            for square in (task..squares).step_by(TASKS as usize) {
-                job.check()?;
-                for index in 0..ROW * ROW {
-                    let mut random = Random::new(11, u64::from(square), u64::from(index));
-                    for once in 0..ONCE {
-                        let path = if once == 0 { &long } else { &short };
-                        let mut ray = first_ray(cloth, ROW, index, Vec3::NEG_Z, &mut random);
-                        ray.origin.z += OVER_MM;
-                        tally.seen = usize::from(warp_on_top(cloth, &ray));
-                        path.trace(ray, &mut tally, &mut random, &mut counters);
-                    }
-                }
-            }
-            Ok(tally.sums)
-        })
-        .collect::<Result<_, Cancelled>>()?;
-    let paths = f64::from(squares * ROW * ROW);
+    let top = all.bounds().max.z;
+    let count = paths.div_ceil(ROW * ROW).max(2);
+    let none = || Terms {
+        suns: &suns,
+        warps,
+        seen: 0,
+        sums: Light::dark(),
+    };
+    let parts = squares(11, count, none, job, |tally, index, random| {
+        for once in 0..ONCE {
+            let path = if once == 0 { &long } else { &short };
+            let ray = first_ray(cloth, top, ROW, index, Vec3::NEG_Z, random);
+            tally.seen = usize::from(warp_on_top(cloth, &ray));
+            path.trace(ray, tally, random, &mut Counters::default());
+        }
+    })?;
+    let paths = f64::from(count * ROW * ROW);
     let mut mean = Light::dark();
     for part in &parts {
-        for (sum, more) in mean.0.iter_mut().zip(&part.0) {
+        for (sum, more) in mean.0.iter_mut().zip(&part.sums.0) {
             *sum += more / paths;
         }
     }
     Ok(mean)
+}
+
+/// Follows what starts in the cells of so many squares: `follow` gets a tally, the cell and
+/// random numbers that hang on the square and the cell alone. Returns the tallies of all
+/// tasks, in their order.
+fn squares<T: Send>(
+    seed: u64,
+    count: u32,
+    none: impl Fn() -> T + Sync,
+    job: &Job,
+    follow: impl Fn(&mut T, u32, &mut Random) + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    let task = |task: u32| {
+        let mut tally = none();
+        for square in (task..count).step_by(TASKS as usize) {
+            job.check()?;
+            for index in 0..ROW * ROW {
+                let mut random = Random::new(seed, u64::from(square), u64::from(index));
+                follow(&mut tally, index, &mut random);
+            }
+        }
+        Ok(tally)
+    };
+    (0..TASKS).into_par_iter().map(task).collect()
 }
 
 /// Whether the warp is on top where a ray from straight above meets the cloth.
@@ -452,6 +459,7 @@ pub fn transmittance(cloth: &ClothVolume, rays: u32, job: &Job) -> Result<f64, C
         Vec3::new(0.0, slant, -slant),
     ];
     let batches = rays.div_ceil(ROW * ROW).max(1);
+    let top = cloth.height_range().1;
     let sums: Vec<f64> = (0..batches)
         .into_par_iter()
         .map(|batch| {
@@ -461,7 +469,7 @@ pub fn transmittance(cloth: &ClothVolume, rays: u32, job: &Job) -> Result<f64, C
             for index in 0..ROW * ROW {
                 let mut random = Random::new(12, u64::from(batch), u64::from(index));
                 let direction = directions[(batch as usize + index as usize) % 3];
-                let ray = first_ray(cloth, ROW, index, direction, &mut random);
+                let ray = first_ray(cloth, top, ROW, index, direction, &mut random);
                 let share = Scatterer::transmittance(
                     cloth,
                     &ray,

@@ -10,9 +10,9 @@ use crate::render::Arrival;
 pub const FACTORS: usize = 2 * TERMS + KINDS * 2 * OWN;
 /// A gain outside is not believed: the series is not meant to run away between the
 /// directions that it was measured in.
-pub(super) const GAINS: std::ops::RangeInclusive<f32> = 0.2..=4.0;
+pub(super) const GAINS: std::ops::RangeInclusive<f32> = 0.4..=2.5;
 /// A factor beyond is no correction any more.
-pub(super) const FARTHEST: f32 = 4.0;
+pub(super) const FARTHEST: f32 = 1.99;
 
 /// Where the factors of light scattered once (0) or more often (1) begin: those of all
 /// [`TERMS`], and those of the [`OWN`] of a kind of place.
@@ -32,7 +32,7 @@ impl Gain {
     pub const NONE: Self = Self([0.0; FACTORS]);
 
     /// From what each factor is; `None` for more than [`FACTORS`] or for one that is no
-    /// number or beyond ±4. Factors that are not given are 0.
+    /// number or is ±2 or beyond. Factors that are not given are 0.
     pub fn new(factors: &[f32]) -> Option<Self> {
         let mut gain = Self::NONE;
         gain.0.get_mut(..factors.len())?.copy_from_slice(factors);
@@ -68,7 +68,7 @@ impl TryFrom<Vec<f32>> for Gain {
 
     fn try_from(factors: Vec<f32>) -> Result<Self, String> {
         Self::new(&factors)
-            .ok_or_else(|| format!("a gain has at most {FACTORS} factors between -4 and 4"))
+            .ok_or_else(|| format!("a gain has at most {FACTORS} factors between -2 and 2"))
     }
 }
 
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn what_is_kept_is_read_again_and_what_is_no_gain_is_not() {
         for count in [0, 1, TERMS, FACTORS] {
-            let factors: Vec<f32> = (0..count).map(|i| 0.01 * (i + 1) as f32).collect();
+            let factors: Vec<f32> = (0..count).map(|i| 0.004 * (i + 1) as f32).collect();
             let gain = Gain::new(&factors).unwrap();
             let text = ron::to_string(&gain).unwrap();
             assert_eq!(ron::from_str::<Gain>(&text).unwrap(), gain);
@@ -109,7 +109,7 @@ mod tests {
         }
         assert_eq!(ron::to_string(&Gain::NONE).unwrap(), "[]");
         assert!(Gain::new(&[0.0; FACTORS + 1]).is_none());
-        for wrong in [f32::NAN, f32::INFINITY, -4.1] {
+        for wrong in [f32::NAN, f32::INFINITY, -2.0] {
             assert!(Gain::new(&[0.1, wrong]).is_none());
         }
         assert!(ron::from_str::<Gain>("[0.1, 7.0]").is_err());

@@ -9,7 +9,7 @@ pub const TERMS: usize = 24;
 /// Kinds of places where light is scattered.
 pub const KINDS: usize = 18;
 /// Terms that each kind of place has a factor of its own for: the first ones.
-pub const OWN: usize = 4;
+pub const OWN: usize = 12;
 
 /// Light scattered more often than these is that of yarns paler and paler.
 const OFTEN: [f32; 3] = [8.0, 32.0, 128.0];

@@ -16,10 +16,10 @@ use super::gain::{FACTORS, FARTHEST, Gain, first_factors};
 use super::series::{OWN, TERMS};
 
 /// Pull of the factors, as a share of the measurements: what no other pull holds.
-const RIDGE: f64 = 1e-6;
+const RIDGE: f64 = 5e-6;
 /// Pull of the mean square of how far gains are from 1, as a share of the measurements: a
 /// gain that is far in most light comes to where it is not believed.
-const CALM: f64 = 3e-3;
+const CALM: f64 = 2e-3;
 /// The same in light from anywhere to anywhere at all kinds of place: what a measured cloth
 /// hardly shows may be most of what another weave of its yarns does.
 const ANYWHERE: f64 = 4e-3;

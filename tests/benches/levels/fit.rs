@@ -42,8 +42,8 @@ const DENSITIES: [(Family, [[f32; 2]; 4]); 4] = [
     ),
 ];
 
-/// Paths at a coarse level, where no other number is asked for; level 0, which all levels are compared with, has twice as many,
-/// and silk, whose highlights are narrow, too.
+/// Paths at a coarse level, where no other number is asked for; level 0, which all levels
+/// are compared with, has twice as many, and silk, whose highlights are narrow, too.
 pub const PATHS: u32 = 1 << 16;
 /// Paths that measure how terms go together.
 const PRODUCT_PATHS: u32 = 1 << 11;
@@ -215,13 +215,14 @@ fn add_rows(name: &str, folder: &Path, paths: u32, rows: &mut Vec<Row>) {
     }
 }
 
-/// Measures what is not kept yet and returns the text of the table: first what holds for
-/// any yarns of a family, density alone, then the presets' exemplars, each with its gains.
-pub fn table(folder: &Path, paths: u32) -> String {
+/// Measures what is not kept yet of some presets and returns the text of the table: first
+/// what holds for any yarns of a family, density alone, then the presets' exemplars, each
+/// with its gains.
+pub fn table(names: &[&str], folder: &Path, paths: u32) -> String {
     let any = Family::ALL.into_iter().flat_map(nodes);
     std::fs::create_dir_all(folder).expect("a folder");
     let mut rows: Vec<Row> = any.map(|row| (row, Vec::new())).collect();
-    for name in presets::names() {
+    for name in names {
         add_rows(name, folder, paths, &mut rows);
     }
     let mut text = String::from("[\n");
