@@ -491,6 +491,11 @@ pub fn transmittance(cloth: &ClothVolume, rays: u32, job: &Job) -> Result<f64, C
 mod tests {
     use std::sync::Arc;
 
+    use glam::Vec2;
+
+    use super::super::LevelCorrection;
+    use super::super::gain::{Gain, first_factors};
+    use super::super::series::OWN;
     use super::*;
     use crate::exemplar::ExemplarStore;
     use crate::formats::presets;
@@ -540,6 +545,75 @@ mod tests {
         }
         let [once, more] = [0, 1].map(|order| both[2][0][order] + both[2][1][order]);
         assert!((once / none[2][1][0] - 1.0).abs() < 0.03 && more > 0.0);
+    }
+
+    /// Light with the gain of a picture, and with the factors that a fit finds.
+    struct Gained {
+        warps: u32,
+        gains: [Gain; 2],
+        sums: [f64; 3],
+    }
+
+    impl Tally for Gained {
+        fn albedo<S: Scatterer>(&self, _: &S, _: u32) -> Vec3 {
+            Vec3::splat(0.5)
+        }
+
+        fn add(&mut self, _: u32, _: Vec3) {}
+
+        fn add_from<S: Scatterer>(&mut self, cloth: &S, arrival: &Arrival, light: Vec3) {
+            let yarn = usize::from(arrival.optics & !PLACE >= self.warps);
+            let (kind, more) = (kind(arrival), usize::from(arrival.order > 1));
+            let [common, own] = first_factors(kind, more);
+            let factors = self.gains[yarn].factors();
+            let fitted: f32 = (terms(arrival).iter().enumerate())
+                .map(|(term, value)| {
+                    let own = if term < OWN { factors[own + term] } else { 0.0 };
+                    value * (factors[common + term] + own)
+                })
+                .sum();
+            let light = f64::from(light.x);
+            self.sums[0] += light;
+            self.sums[1] += light * f64::from(cloth.gain(arrival));
+            self.sums[2] += light * f64::from(1.0 + fitted);
+        }
+    }
+
+    #[test]
+    fn a_picture_shows_the_gain_that_was_fitted() {
+        let design = Arc::new(presets::design("silk-satin").unwrap().unwrap());
+        let request = StillRequest {
+            width: 16,
+            height: 16,
+            width_mm: Some(1.0),
+            dials: vec![("level".to_owned(), "2".to_owned())],
+            ..StillRequest::default()
+        };
+        let prepared =
+            still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+        let cloth = prepared.cloth();
+        let set = &cloth.sets()[0];
+        let row = LevelCorrection::of(set.pair.warp.family, set).unwrap();
+        let stack = Stack::new(cloth, 1, Vec2::ZERO);
+        let suns = lamps();
+        for lamp in [25, 22] {
+            let path = path_to(&suns[lamp..=lamp], &stack, 64, 0.0);
+            let mut tally = Gained {
+                warps: 1,
+                gains: row.gains.clone(),
+                sums: [0.0; 3],
+            };
+            for index in 0..5_000 {
+                let mut random = Random::new(5, index, 0);
+                let top = cloth.height_range().1;
+                let ray = first_ray(cloth, top, 1, 0, Vec3::NEG_Z, &mut random);
+                path.trace(ray, &mut tally, &mut random, &mut Counters::default());
+            }
+            let [plain, shown, fitted] = tally.sums;
+            // A gain that does something, and the same one.
+            assert!((shown / plain - 1.0).abs() > 0.03, "{:?}", tally.sums);
+            assert!((shown / fitted - 1.0).abs() < 5e-3, "{:?}", tally.sums);
+        }
     }
 
     #[test]
