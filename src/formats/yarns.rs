@@ -45,13 +45,16 @@ pub fn is_yarns(path: &Path) -> bool {
 
 /// About how many bytes [`write()`] will write; 0 for a name that is none of its own.
 pub fn about_bytes(tubes: &[YarnTube], path: &Path) -> u64 {
+    let points: usize = tubes.iter().map(|tube| tube.skin.len()).sum();
+    // A point stands with two triangles: three numbers of a triangle each.
     let a_point = match ending(path) {
-        // Two triangles a point: numbers of 4 bytes, or words.
         Some(Ending::Glb) => 49,
-        Some(Ending::Obj) => 79,
+        Some(Ending::Obj) => {
+            let digits = points.max(1).ilog10() as u64 + 1;
+            37 + 2 * (2 + 3 * (1 + digits))
+        }
         None => 0,
     };
-    let points: usize = tubes.iter().map(|tube| tube.skin.len()).sum();
     a_point * points as u64
 }
 
