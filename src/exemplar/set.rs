@@ -16,6 +16,8 @@ use crate::yarn::{RecipeError, WeaveGeometry, YarnRecipe, hash};
 const SEED: u64 = 2012;
 /// Finest voxel, µm; fibres are 10–20 µm.
 const VOXEL_UM: f32 = 5.6;
+/// The coarsest level: blocks of the next would have too few voxels to tell yarns apart.
+pub const COARSEST_LEVEL: u32 = 4;
 /// Fewest and most voxels along a block's side at level 0.
 const BLOCK_SIDE: [usize; 2] = [40, 72];
 
@@ -107,7 +109,7 @@ pub fn common_grid(
 fn voxels_along(pitch: f32, level: u32) -> usize {
     let fine = (pitch * 1000.0 / VOXEL_UM) as usize;
     let fine = fine.clamp(BLOCK_SIDE[0], BLOCK_SIDE[1]);
-    ((fine >> level.min(4)).next_multiple_of(BRICK)).max(BRICK)
+    ((fine >> level.min(COARSEST_LEVEL)).next_multiple_of(BRICK)).max(BRICK)
 }
 
 impl VoxelGrid {

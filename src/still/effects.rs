@@ -2,6 +2,7 @@
 
 use super::request::{EffectBase, EffectChoice};
 use crate::cloth::ClothSettings;
+use crate::exemplar::COARSEST_LEVEL;
 use crate::formats::png::Depth;
 use crate::render::RenderSettings;
 use crate::synthesis::{Method, Rank};
@@ -178,7 +179,7 @@ pub(super) fn turn(
             "png-bits" => {
                 depth(value).ok_or_else(wrong)?;
             }
-            "level" => cloth.level = number(0, 4)?,
+            "level" => cloth.level = number(0, COARSEST_LEVEL)?,
             "level-correction" => cloth.correct_levels = switch(value).ok_or_else(wrong)?,
             "order" => render.max_order = number(1, 4096)?,
             "roulette-order" if value == "never" => render.roulette_order = u32::MAX,

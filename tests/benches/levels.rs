@@ -3,8 +3,8 @@
 //! `cargo bench --bench levels` prints the time to build the exemplars of each level, and
 //! mean radiance (with the standard error of the difference) and coverage of the cloth
 //! against level 0, six designs under four lights, with the correction and without it
-//! (`-- NAME` for some designs or lights alone, `--spp N` for less noise, `--corrected` without the
-//! rows of averaging alone). `-- --fit DIR` measures the corrections, keeping what is
+//! (`-- NAME` for some designs or lights alone, `--spp N` for less noise, `--corrected`
+//! without the rows of averaging alone). `-- --fit DIR` measures the corrections, keeping what is
 //! measured in a folder, and prints the table; `-- --fit DIR --write` puts it in the place
 //! of `presets/levels.ron`; `--paths N` takes more of them for what is not kept yet; with
 //! names of presets the table has those alone, and is not written. Nothing is asserted.
@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use pickglass::exemplar::ExemplarStore;
+use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
 use pickglass::formats::{atomic, presets};
 use pickglass::job::Job;
 use pickglass::render::{Film, Pixel};
@@ -125,7 +125,7 @@ fn compare(chosen: &[String], spp: u32, corrected_alone: bool) {
         let fine = measured(0, false);
         println!("{name:12} level 0  built in {:5.2} s", fine.seconds);
         let mut last = fine.block;
-        for level in 1..=4 {
+        for level in 1..=COARSEST_LEVEL {
             let coarse = measured(level, true);
             if coarse.block == last {
                 println!("{name:12} level {level} is level {}", level - 1);

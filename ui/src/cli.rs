@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use pickglass::design::{Family, Srgb};
+use pickglass::exemplar::COARSEST_LEVEL;
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use crate::values::{self, Dial, PicturePath, SettArg, Size, VolumePath};
@@ -357,7 +358,7 @@ pub struct VolumeArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub voxels_per_crossing: Option<u32>,
     /// Voxel level of the cloth: each halves the resolution
-    #[arg(long, value_name = "L", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=4))]
+    #[arg(long, value_name = "L", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=i64::from(COARSEST_LEVEL)))]
     pub level: u32,
     /// Only what lies above the mid plane
     #[arg(long)]

@@ -9,9 +9,9 @@ mod command_table;
 mod commands;
 mod opened;
 mod out;
-mod scene;
 mod tokens;
 mod values;
+mod volumes;
 mod window;
 
 use std::process::ExitCode;

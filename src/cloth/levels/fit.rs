@@ -499,20 +499,21 @@ mod tests {
     use super::*;
     use crate::exemplar::ExemplarStore;
     use crate::formats::presets;
-    use crate::still::{self, StillRequest};
+    use crate::still::{self, PreparedCloth, StillRequest};
+
+    /// The cloth of a preset at a level.
+    fn prepared(name: &str, level: u32) -> PreparedCloth {
+        let design = Arc::new(presets::design(name).unwrap().unwrap());
+        let request = StillRequest {
+            dials: vec![("level".to_owned(), level.to_string())],
+            ..StillRequest::default()
+        };
+        still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap()
+    }
 
     #[test]
     fn warp_and_weft_are_told_apart_in_light_scattered_by_both() {
-        let design = Arc::new(presets::design("linen-plain").unwrap().unwrap());
-        let request = StillRequest {
-            width: 16,
-            height: 16,
-            width_mm: Some(1.0),
-            dials: vec![("level".to_owned(), "3".to_owned())],
-            ..StillRequest::default()
-        };
-        let prepared =
-            still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+        let prepared = prepared("linen-plain", 3);
         let of = |warps| measure(prepared.cloth(), None, warps, 512, &Job::new()).unwrap();
         // Light by pair of albedos, last yarn and order, mean of all lamps.
         let sums = |light: &Light| {
@@ -581,16 +582,7 @@ mod tests {
 
     #[test]
     fn a_picture_shows_the_gain_that_was_fitted() {
-        let design = Arc::new(presets::design("silk-satin").unwrap().unwrap());
-        let request = StillRequest {
-            width: 16,
-            height: 16,
-            width_mm: Some(1.0),
-            dials: vec![("level".to_owned(), "2".to_owned())],
-            ..StillRequest::default()
-        };
-        let prepared =
-            still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+        let prepared = prepared("silk-satin", 2);
         let cloth = prepared.cloth();
         let set = &cloth.sets()[0];
         let row = LevelCorrection::of(set.pair.warp.family, set).unwrap();

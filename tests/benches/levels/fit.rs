@@ -10,7 +10,7 @@ use pickglass::cloth::levels::solve::{Pair, solve};
 use pickglass::cloth::levels::{Gain, LevelCorrection, Sizes};
 use pickglass::cloth::{ClothSettings, ClothVolume, HairLayer, YarnClasses};
 use pickglass::design::{Design, Family, Grid, YarnId, YarnMap, YarnMaps};
-use pickglass::exemplar::ExemplarStore;
+use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
 use pickglass::formats::{atomic, presets};
 use pickglass::job::Job;
 use pickglass::synthesis::Catalogue;
@@ -189,7 +189,7 @@ type Row = (LevelCorrection, Vec<Pair>);
 fn add_rows(name: &str, folder: &Path, paths: u32, rows: &mut Vec<Row>) {
     let fine = light(name, 0, &white(name, 0), folder, paths);
     let mut last = 1.0;
-    for level in 1..=4 {
+    for level in 1..=COARSEST_LEVEL {
         let coarse = white(name, level);
         // Small blocks have no coarser voxels than eight a side.
         if coarse.ratio <= 1.02 * last || coarse.sizes.is_none() {

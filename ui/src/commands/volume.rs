@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::volume::{self, Plan, bytes_in_words};
+use pickglass::formats::volume::{self, bytes_in_words};
 use pickglass::formats::yarns;
 use pickglass::job::Job;
 use pickglass::still::{self, StillRequest};
-use pickglass::volume::source::{Frame, VoxelSource};
+use pickglass::volume::source::VoxelSource;
 use pickglass::yarn::tubes;
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ use super::{check_output, note_warnings};
 use crate::cli::VolumeArgs;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
-use crate::scene;
+use crate::volumes;
 
 pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let path = &args.output.0;
@@ -44,9 +44,9 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let part = if args.face { Part::Face } else { Part::Whole };
     let window = ClothWindow::new(prepared.cloth(), region, part, args.voxels_per_crossing)?;
     let frame = window.frame();
-    let attached = scene::beside(path, &frame, &request)?;
+    let attached = volumes::scene_beside(path, &frame, &request)?;
     let plan = volume::plan(&window, path, &attached)?;
-    out::note(&announcement(&plan, &frame));
+    out::note(&volumes::voxels_in_words(&plan, &frame));
     let begun = Instant::now();
     let written = volume::write(&window, path, &attached, &job);
     progress.finish();
@@ -88,19 +88,6 @@ fn region(args: &VolumeArgs, opened: &Opened) -> Region {
     })
 }
 
-fn announcement(plan: &Plan, frame: &Frame) -> String {
-    let [x, y, z] = frame.size.to_array();
-    let about = if plan.exact { "" } else { "about " };
-    format!(
-        "{about}{} in {} file{}: {x} x {y} x {z} voxels of {:.2} µm, about {:.1} s",
-        bytes_in_words(plan.bytes()),
-        plan.files.len(),
-        if plan.files.len() == 1 { "" } else { "s" },
-        frame.edge_mm * 1e3,
-        plan.seconds,
-    )
-}
-
 fn wrote(files: &[PathBuf], bytes: u64, seconds: f64) -> String {
     let list: Vec<String> = files
         .iter()
@@ -128,8 +115,7 @@ fn run_yarns(args: &VolumeArgs, opened: &Opened, region: Region) -> anyhow::Resu
         region.end..last(region.end, region.ends),
         region.pick..last(region.pick, region.picks),
     )?;
-    let about = bytes_in_words(yarns::about_bytes(&tubes, path));
-    out::note(&format!("about {about}: {} yarns", tubes.len()));
+    out::note(&volumes::yarns_in_words(&tubes, path));
     let progress = Progress::new();
     let begun = Instant::now();
     let written = yarns::write(&opened.design, &tubes, path, &interruptible(&progress));

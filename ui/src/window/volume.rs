@@ -7,7 +7,7 @@ use std::sync::Arc;
 use egui::{DragValue, RichText};
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::design::Design;
-use pickglass::exemplar::ExemplarStore;
+use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
 use pickglass::formats::volume::{self, VolumeFileError, bytes_in_words};
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
@@ -19,12 +19,10 @@ use super::task::{Outcome, Running};
 use super::toasts::Grade;
 use super::{dialog, icons};
 use crate::tokens::{self, Palette};
-use crate::{scene, values};
+use crate::{values, volumes};
 
 /// Crossings along the side of the window that is proposed where nothing is selected.
 const PROPOSED: u32 = 16;
-/// The coarsest level of the cloth.
-const COARSEST: u32 = 4;
 
 /// What became of an export.
 pub enum Exported {
@@ -277,7 +275,7 @@ impl Form {
                     .labelled_by(label.id);
                 ui.end_row();
                 let label = ui.label("Level: each is half as fine");
-                ui.add(DragValue::new(&mut self.wanted.level).range(0..=COARSEST))
+                ui.add(DragValue::new(&mut self.wanted.level).range(0..=COARSEST_LEVEL))
                     .labelled_by(label.id);
                 ui.end_row();
                 ui.label("Thickness");
@@ -359,16 +357,10 @@ fn plan(
     };
     let window = window(&cloth, wanted)?;
     let (path, frame) = (wanted.path()?, window.frame());
-    let attached = scene::beside(&path, &frame, &request).map_err(|error| error.to_string())?;
+    let attached =
+        volumes::scene_beside(&path, &frame, &request).map_err(|error| error.to_string())?;
     let plan = volume::plan(&window, &path, &attached).map_err(|error| error.to_string())?;
-    let [x, y, z] = frame.size.to_array();
-    let about = if plan.exact { "" } else { "about " };
-    let text = format!(
-        "{about}{}: {x} × {y} × {z} voxels of {:.1} µm, about {:.0} s",
-        bytes_in_words(plan.bytes()),
-        frame.edge_mm * 1e3,
-        plan.seconds.ceil(),
-    );
+    let text = volumes::voxels_in_words(&plan, &frame);
     Ok((Made::Cloth(cloth), text))
 }
 
@@ -385,8 +377,7 @@ fn plan_yarns(design: &Arc<Design>, wanted: &Wanted) -> Planned {
         pick..pick + i64::from(picks),
     );
     let tubes = made.map_err(|error| error.to_string())?;
-    let bytes = bytes_in_words(yarns::about_bytes(&tubes, &wanted.path()?));
-    let text = format!("about {bytes}: {} yarns", tubes.len());
+    let text = volumes::yarns_in_words(&tubes, &wanted.path()?);
     Ok((Made::Yarns(Arc::clone(design), tubes.into()), text))
 }
 
@@ -413,7 +404,7 @@ fn write_voxels(
     job: &Job,
 ) -> Result<Exported, String> {
     let window = window(cloth, wanted)?;
-    let attached = scene::beside(path, &window.frame(), request);
+    let attached = volumes::scene_beside(path, &window.frame(), request);
     let attached = attached.map_err(|error| error.to_string())?;
     match volume::write(&window, path, &attached, job) {
         Ok(written) => Ok(Exported::Written {
