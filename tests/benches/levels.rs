@@ -31,8 +31,8 @@ const DESIGNS: [&str; 6] = [
     "damask",
 ];
 const LIGHTS: [&str; 4] = ["day", "studio", "sun", "raking-left"];
-/// Samples a pixel where none are asked for.
-const SPP: u32 = 32;
+/// Samples a pixel where none are asked for: differences are then known to 0.3 to 0.6 %.
+const SPP: u32 = 128;
 
 /// What a picture shows.
 struct Shown {
