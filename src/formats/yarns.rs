@@ -45,17 +45,16 @@ pub fn is_yarns(path: &Path) -> bool {
 
 /// About how many bytes [`write()`] will write; 0 for a name that is none of its own.
 pub fn about_bytes(tubes: &[YarnTube], path: &Path) -> u64 {
-    let points: usize = tubes.iter().map(|tube| tube.skin.len()).sum();
-    // A point stands with two triangles: three numbers of a triangle each.
-    let a_point = match ending(path) {
-        Some(Ending::Glb) => 49,
+    match ending(path) {
+        Some(Ending::Glb) => tubes.iter().flat_map(parts).sum(),
         Some(Ending::Obj) => {
-            let digits = points.max(1).ilog10() as u64 + 1;
-            37 + 2 * (2 + 3 * (1 + digits))
+            let points: u64 = tubes.iter().map(|tube| tube.skin.len() as u64).sum();
+            let digits = u64::from(points.max(1).ilog10()) + 1;
+            // A line of a point, and those of two triangles: an index at each corner.
+            points * (37 + 2 * (2 + 3 * (1 + digits)))
         }
         None => 0,
-    };
-    a_point * points as u64
+    }
 }
 
 #[derive(Clone, Copy)]

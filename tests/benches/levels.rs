@@ -4,10 +4,11 @@
 //! mean radiance (with the standard error of the difference) and coverage of the cloth
 //! against level 0, six designs under four lights, with the correction and without it
 //! (`-- NAME` for some designs or lights alone, `--spp N` for less noise, `--corrected`
-//! without the rows of averaging alone). `-- --fit DIR` measures the corrections, keeping what is
-//! measured in a folder, and prints the table; `-- --fit DIR --write` puts it in the place
-//! of `presets/levels.ron`; `--paths N` takes more of them for what is not kept yet; with
-//! names of presets the table has those alone, and is not written. Nothing is asserted.
+//! without the rows of averaging alone). `-- --fit DIR` measures the corrections, keeping
+//! what is measured in a folder, and prints the table; `-- --fit DIR --write` puts it in
+//! the place of `presets/levels.ron`; `--paths N` takes more of them for what is not kept
+//! yet; with names of presets the table has those alone, and is not written. Nothing is
+//! asserted.
 
 #[path = "levels/fit.rs"]
 mod fit;

@@ -1,23 +1,54 @@
-//! What an export says before it writes, and the scene for another renderer that goes
-//! beside a volume: alike on the command line and in the window.
+//! What is exported of a region of cloth, the scene for another renderer that goes beside
+//! it, and what is said before it is written: alike on the command line and in the window.
 
 use std::path::Path;
 
+use pickglass::cloth::{ClothWindow, Part, Region};
+use pickglass::design::Design;
 use pickglass::formats::volume::{Attachment, Plan, VolumeFormat, bytes_in_words};
-use pickglass::formats::yarns;
-use pickglass::still::{self, StillError, StillRequest};
-use pickglass::volume::source::Frame;
-use pickglass::yarn::tubes::YarnTube;
+use pickglass::formats::yarns::about_bytes;
+use pickglass::still::{self, PreparedCloth, StillError, StillRequest};
+use pickglass::volume::source::{Frame, VoxelSource};
+use pickglass::yarn::tubes::{self, TubesError, YarnTube};
 
 /// Pixels across the scene's picture.
-const WIDTH: u32 = 1280;
+const SCENE_WIDTH: u32 = 1280;
+
+/// Voxels of a region, as fine as the cloth's own where no number is given, and what goes
+/// beside their file, seen and lit as `request` says.
+///
+/// # Errors
+/// When there is no such window or the request is not usable.
+pub fn voxels<'c>(
+    cloth: &'c PreparedCloth,
+    (region, part, per_crossing): (Region, Part, Option<u32>),
+    path: &Path,
+    request: &StillRequest,
+) -> anyhow::Result<(ClothWindow<'c>, Vec<Attachment>)> {
+    let window = ClothWindow::new(cloth.cloth(), region, part, per_crossing)?;
+    let attached = scene_beside(path, &window.frame(), request)?;
+    Ok((window, attached))
+}
+
+/// The yarns of a region.
+///
+/// # Errors
+/// When it is empty or too large, or a yarn cannot be built.
+pub fn yarns(design: &Design, region: &Region) -> Result<Vec<YarnTube>, TubesError> {
+    let threads = |first: i64, count: u32| first..first.saturating_add(i64::from(count));
+    tubes::tubes(
+        design,
+        threads(region.end, region.ends),
+        threads(region.pick, region.picks),
+    )
+}
 
 /// What goes beside a volume of this name and size: a `.vol`'s scene, with a picture of the
 /// volume's own shape that is seen and lit as `request` says; nothing beside others.
 ///
 /// # Errors
 /// When the request is not usable.
-pub fn scene_beside(
+fn scene_beside(
     path: &Path,
     frame: &Frame,
     request: &StillRequest,
@@ -26,9 +57,11 @@ pub fn scene_beside(
         return Ok(Vec::new());
     }
     let shape = f64::from(frame.size.y) / f64::from(frame.size.x);
-    let height = (f64::from(WIDTH) * shape).round().clamp(1.0, 16_384.0);
+    let height = (f64::from(SCENE_WIDTH) * shape)
+        .round()
+        .clamp(1.0, 16_384.0);
     let request = StillRequest {
-        width: WIDTH,
+        width: SCENE_WIDTH,
         height: height as u32,
         ..request.clone()
     };
@@ -51,6 +84,6 @@ pub fn voxels_in_words(plan: &Plan, frame: &Frame) -> String {
 
 /// What writing yarns comes to.
 pub fn yarns_in_words(tubes: &[YarnTube], path: &Path) -> String {
-    let about = bytes_in_words(yarns::about_bytes(tubes, path));
+    let about = bytes_in_words(about_bytes(tubes, path));
     format!("about {about}: {} yarns", tubes.len())
 }

@@ -321,7 +321,7 @@ pub fn products(
         paths.div_ceil(ROW * ROW),
         none,
         job,
-        |tally, index, random| {
+        |tally, [_, index], random| {
             let ray = first_ray(cloth, top, ROW, index, Vec3::NEG_Z, random);
             path.trace(ray, tally, random, &mut Counters::default());
         },
@@ -398,7 +398,7 @@ fn measure_all<S: Scatterer>(
         seen: 0,
         sums: Light::dark(),
     };
-    let parts = squares(11, count, none, job, |tally, index, random| {
+    let parts = squares(11, count, none, job, |tally, [_, index], random| {
         for once in 0..ONCE {
             let path = if once == 0 { &long } else { &short };
             let ray = first_ray(cloth, top, ROW, index, Vec3::NEG_Z, random);
@@ -416,15 +416,15 @@ fn measure_all<S: Scatterer>(
     Ok(mean)
 }
 
-/// Follows what starts in the cells of so many squares: `follow` gets a tally, the cell and
-/// random numbers that hang on the square and the cell alone. Returns the tallies of all
-/// tasks, in their order.
+/// Follows what starts in the cells of so many squares: `follow` gets a tally, the square
+/// and the cell, and random numbers that hang on these two alone. Returns the tallies of
+/// all tasks, in their order.
 fn squares<T: Send>(
     seed: u64,
     count: u32,
     none: impl Fn() -> T + Sync,
     job: &Job,
-    follow: impl Fn(&mut T, u32, &mut Random) + Sync,
+    follow: impl Fn(&mut T, [u32; 2], &mut Random) + Sync,
 ) -> Result<Vec<T>, Cancelled> {
     let task = |task: u32| {
         let mut tally = none();
@@ -432,7 +432,7 @@ fn squares<T: Send>(
             job.check()?;
             for index in 0..ROW * ROW {
                 let mut random = Random::new(seed, u64::from(square), u64::from(index));
-                follow(&mut tally, index, &mut random);
+                follow(&mut tally, [square, index], &mut random);
             }
         }
         Ok(tally)
@@ -458,32 +458,18 @@ pub fn transmittance(cloth: &ClothVolume, rays: u32, job: &Job) -> Result<f64, C
         Vec3::new(slant, 0.0, -slant),
         Vec3::new(0.0, slant, -slant),
     ];
-    let batches = rays.div_ceil(ROW * ROW).max(1);
+    let count = rays.div_ceil(ROW * ROW).max(1);
     let top = cloth.height_range().1;
-    let sums: Vec<f64> = (0..batches)
-        .into_par_iter()
-        .map(|batch| {
-            job.check()?;
-            let mut sum = 0.0;
-            let mut counters = Counters::default();
-            for index in 0..ROW * ROW {
-                let mut random = Random::new(12, u64::from(batch), u64::from(index));
-                let direction = directions[(batch as usize + index as usize) % 3];
-                let ray = first_ray(cloth, top, ROW, index, direction, &mut random);
-                let share = Scatterer::transmittance(
-                    cloth,
-                    &ray,
-                    f32::INFINITY,
-                    0.0,
-                    &mut random,
-                    &mut counters,
-                );
-                sum += f64::from(share);
-            }
-            Ok(sum)
-        })
-        .collect::<Result<_, Cancelled>>()?;
-    Ok(sums.iter().sum::<f64>() / f64::from(batches * ROW * ROW))
+    let follow = |sum: &mut f64, [square, index]: [u32; 2], random: &mut Random| {
+        let direction = directions[(square as usize + index as usize) % 3];
+        let ray = first_ray(cloth, top, ROW, index, direction, random);
+        let mut counters = Counters::default();
+        let share =
+            Scatterer::transmittance(cloth, &ray, f32::INFINITY, 0.0, random, &mut counters);
+        *sum += f64::from(share);
+    };
+    let sums = squares(12, count, || 0.0, job, follow)?;
+    Ok(sums.iter().sum::<f64>() / f64::from(count * ROW * ROW))
 }
 
 #[cfg(test)]
@@ -588,6 +574,7 @@ mod tests {
         let row = LevelCorrection::of(set.pair.warp.family, set).unwrap();
         let stack = Stack::new(cloth, 1, Vec2::ZERO);
         let suns = lamps();
+        let top = cloth.height_range().1;
         for lamp in [25, 22] {
             let path = path_to(&suns[lamp..=lamp], &stack, 64, 0.0);
             let mut tally = Gained {
@@ -597,7 +584,6 @@ mod tests {
             };
             for index in 0..5_000 {
                 let mut random = Random::new(5, index, 0);
-                let top = cloth.height_range().1;
                 let ray = first_ray(cloth, top, 1, 0, Vec3::NEG_Z, &mut random);
                 path.trace(ray, &mut tally, &mut random, &mut Counters::default());
             }

@@ -3,14 +3,13 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use pickglass::cloth::{ClothWindow, Part, Region};
+use pickglass::cloth::{Part, Region};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume::{self, bytes_in_words};
 use pickglass::formats::yarns;
 use pickglass::job::Job;
 use pickglass::still::{self, StillRequest};
 use pickglass::volume::source::VoxelSource;
-use pickglass::yarn::tubes;
 use serde_json::{Value, json};
 
 use super::{check_output, note_warnings};
@@ -42,9 +41,9 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     progress.finish();
     let prepared = prepared?;
     let part = if args.face { Part::Face } else { Part::Whole };
-    let window = ClothWindow::new(prepared.cloth(), region, part, args.voxels_per_crossing)?;
+    let asked = (region, part, args.voxels_per_crossing);
+    let (window, attached) = volumes::voxels(&prepared, asked, path, &request)?;
     let frame = window.frame();
-    let attached = volumes::scene_beside(path, &frame, &request)?;
     let plan = volume::plan(&window, path, &attached)?;
     out::note(&volumes::voxels_in_words(&plan, &frame));
     let begun = Instant::now();
@@ -109,12 +108,7 @@ fn names(files: &[PathBuf]) -> Vec<Value> {
 
 fn run_yarns(args: &VolumeArgs, opened: &Opened, region: Region) -> anyhow::Result<()> {
     let path = &args.output.0;
-    let last = |first: i64, count: u32| first.saturating_add(i64::from(count));
-    let tubes = tubes::tubes(
-        &opened.design,
-        region.end..last(region.end, region.ends),
-        region.pick..last(region.pick, region.picks),
-    )?;
+    let tubes = volumes::yarns(&opened.design, &region)?;
     out::note(&volumes::yarns_in_words(&tubes, path));
     let progress = Progress::new();
     let begun = Instant::now();

@@ -8,12 +8,12 @@ use egui::{DragValue, RichText};
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::design::Design;
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
-use pickglass::formats::volume::{self, VolumeFileError, bytes_in_words};
+use pickglass::formats::volume::{self, Attachment, VolumeFileError, bytes_in_words};
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
 use pickglass::still::{self, PreparedCloth, StillRequest};
 use pickglass::volume::source::VoxelSource;
-use pickglass::yarn::tubes::{YarnTube, tubes};
+use pickglass::yarn::tubes::YarnTube;
 
 use super::task::{Outcome, Running};
 use super::toasts::Grade;
@@ -355,36 +355,30 @@ fn plan(
             Arc::new(prepared.map_err(|error| error.to_string())?)
         }
     };
-    let window = window(&cloth, wanted)?;
-    let (path, frame) = (wanted.path()?, window.frame());
-    let attached =
-        volumes::scene_beside(&path, &frame, &request).map_err(|error| error.to_string())?;
+    let path = wanted.path()?;
+    let (window, attached) = voxels(&cloth, wanted, &path, &request)?;
     let plan = volume::plan(&window, &path, &attached).map_err(|error| error.to_string())?;
-    let text = volumes::voxels_in_words(&plan, &frame);
+    let text = volumes::voxels_in_words(&plan, &window.frame());
     Ok((Made::Cloth(cloth), text))
 }
 
 fn plan_yarns(design: &Arc<Design>, wanted: &Wanted) -> Planned {
-    let Region {
-        end,
-        pick,
-        ends,
-        picks,
-    } = wanted.region();
-    let made = tubes(
-        design,
-        end..end + i64::from(ends),
-        pick..pick + i64::from(picks),
-    );
+    let made = volumes::yarns(design, &wanted.region());
     let tubes = made.map_err(|error| error.to_string())?;
     let text = volumes::yarns_in_words(&tubes, &wanted.path()?);
     Ok((Made::Yarns(Arc::clone(design), tubes.into()), text))
 }
 
-fn window<'c>(cloth: &'c PreparedCloth, wanted: &Wanted) -> Result<ClothWindow<'c>, String> {
+/// The voxels of it, and what goes beside them.
+fn voxels<'c>(
+    cloth: &'c PreparedCloth,
+    wanted: &Wanted,
+    path: &Path,
+    request: &StillRequest,
+) -> Result<(ClothWindow<'c>, Vec<Attachment>), String> {
     let fine = (wanted.voxels_a_crossing > 0).then_some(wanted.voxels_a_crossing);
-    ClothWindow::new(cloth.cloth(), wanted.region(), wanted.part, fine)
-        .map_err(|error| error.to_string())
+    let asked = (wanted.region(), wanted.part, fine);
+    volumes::voxels(cloth, asked, path, request).map_err(|error| error.to_string())
 }
 
 /// Writes what was planned; all files or none.
@@ -403,9 +397,7 @@ fn write_voxels(
     request: &StillRequest,
     job: &Job,
 ) -> Result<Exported, String> {
-    let window = window(cloth, wanted)?;
-    let attached = volumes::scene_beside(path, &window.frame(), request);
-    let attached = attached.map_err(|error| error.to_string())?;
+    let (window, attached) = voxels(cloth, wanted, path, request)?;
     match volume::write(&window, path, &attached, job) {
         Ok(written) => Ok(Exported::Written {
             path: path.to_owned(),
