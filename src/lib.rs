@@ -13,6 +13,7 @@ pub mod exemplar;
 pub mod formats;
 pub mod hash;
 pub mod job;
+pub mod memory;
 pub mod posterise;
 pub mod render;
 pub mod still;

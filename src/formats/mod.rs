@@ -12,6 +12,7 @@ pub mod atomic;
 pub mod dbw;
 pub mod dtx;
 pub mod exr;
+pub mod field_table;
 pub mod image;
 pub mod jc5;
 pub mod pdf;

@@ -280,6 +280,7 @@ impl Shot<'_> {
             effects,
             level: 0,
             light_error: Some(0.0),
+            warnings: Vec::new(),
         };
         Still {
             report,

@@ -162,4 +162,6 @@ pub struct StillReport {
     pub level: u32,
     /// See [`crate::cloth::ClothVolume::light_error`].
     pub light_error: Option<f32>,
+    /// One line each: what was replaced, cut short or not followed.
+    pub warnings: Vec<String>,
 }

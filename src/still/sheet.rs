@@ -221,6 +221,11 @@ fn join(all: &mut StillReport, still: &Still, first: bool) {
     all.spp = all.spp.min(one.spp);
     all.invalid_samples += one.invalid_samples;
     all.majorant_violations += one.majorant_violations;
+    for warning in &one.warnings {
+        if !all.warnings.contains(warning) {
+            all.warnings.push(warning.clone());
+        }
+    }
     all.level = all.level.max(one.level);
     all.light_error = (all.light_error.zip(one.light_error)).map(|(a, b)| a.max(b));
     if let (Some(known), Some(error)) = (all.error, one.error)

@@ -58,6 +58,7 @@ fn sheet(args: &StillArgs, opened: &Opened, path: &Path) -> anyhow::Result<()> {
     progress.finish();
     let sheet = sheet?;
     sheet.save(path)?;
+    note_warnings(&sheet.report.warnings);
     if args.json {
         let mut report = report_json(&sheet.report);
         let places = sheet.places.iter().map(|place| {
@@ -90,6 +91,7 @@ pub fn render_to(
     progress.finish();
     let still = still?;
     still.save(path)?;
+    note_warnings(&still.report.warnings);
     Ok(still.report)
 }
 
@@ -107,6 +109,7 @@ fn render_volume(
     let (still, warnings) = still?;
     note_warnings(&warnings);
     still.save(path)?;
+    note_warnings(&still.report.warnings);
     Ok(still.report)
 }
 
@@ -166,6 +169,7 @@ pub fn report_json(report: &StillReport) -> Value {
         "effects": effects,
         "level": report.level,
         "light_error": light_error,
+        "warnings": report.warnings,
     })
 }
 
