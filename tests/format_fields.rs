@@ -12,7 +12,9 @@ use std::path::{Path, PathBuf};
 
 /// A file with a field and its twin without it, in a folder of the test's own.
 pub struct Twins {
+    /// The file that has the field.
     pub with: PathBuf,
+    /// The same without it.
     pub without: PathBuf,
 }
 
@@ -22,10 +24,12 @@ pub type Outcome = Result<(String, Vec<String>), String>;
 
 /// Makes and reads the files of a format.
 pub struct Walker {
+    /// As its table says.
     pub format: &'static str,
     /// Writes the twins into a folder; the example stands in the file under the given name,
     /// which is the field's own but in the control.
     pub twins: fn(folder: &Path, field: &Field, written_name: &str) -> Twins,
+    /// Reads one.
     pub read: fn(path: &Path) -> Outcome,
     /// Whether a field's name stands in the file as text, so that another name can be
     /// written for the control.
