@@ -39,7 +39,7 @@ fn picture(engine: &dyn Engine, request: &StillRequest, name: &str) -> Vec<u8> {
     let mut rgba = Vec::new();
     engine
         .draw(request, &Job::new(), &mut |pass| {
-            rgba = pass.rgba.to_vec();
+            rgba = pass.rgba().into_owned();
             if engine.name() == "first sight" {
                 println!("{name}: first sight in {:.1} ms", pass.seconds * 1e3);
             }

@@ -101,7 +101,7 @@ fn a_panel_is_made_into_cloth_where_one_looks() {
     }
     let mut seen = 0;
     render(&cloth, &here, &job, &mut |pass| {
-        seen = pass.rgba.chunks(4).filter(|pixel| pixel[3] > 0).count();
+        seen = pass.rgba().chunks(4).filter(|pixel| pixel[3] > 0).count();
     })
     .unwrap();
     assert!(seen > 32 * 24 / 2, "cloth shows in {seen} pixels");

@@ -3,6 +3,8 @@
 #
 #   bash tests/run.sh            all checks
 #   bash tests/run.sh --bench    the measurements instead, printed and never asserted
+#   bash tests/run.sh --soak     what takes long: references that are missing, and the
+#                                preview's first minute by the clock, printed
 #
 # Installs what it needs when it may (root and apt-get); otherwise it says what is
 # missing and goes on, and the tests that need it say so. With CI=true nothing that is
@@ -297,12 +299,33 @@ measure_all() {
     step "times of the window" window_times
 }
 
-bench=no
+# The first minute of the preview by the clock, alone and with every core loaded.
+first_minute() {
+    local loads=() core
+    if [[ $1 == loaded ]]; then
+        for core in $(seq "$(nproc)"); do
+            (while :; do :; done) &
+            loads+=($!)
+        done
+    fi
+    PICKGLASS_SOAK=20 cargo test --release --workspace --quiet --bin pickglass -- \
+        --nocapture --test-threads 1 never_worse || { kill "${loads[@]}"; return 1; }
+    ((${#loads[@]} == 0)) || kill "${loads[@]}"
+}
+
+soak_all() {
+    step "references" cargo bench --bench preview_references --profile release
+    step "first minute" first_minute alone
+    step "first minute, cores loaded" first_minute loaded
+}
+
+bench=no soak=no
 case ${1:-} in
 '') ;;
 --bench) bench=yes ;;
+--soak) soak=yes ;;
 *)
-    say "usage: bash tests/run.sh [--bench]" >&2
+    say "usage: bash tests/run.sh [--bench|--soak]" >&2
     exit 2
     ;;
 esac
@@ -324,6 +347,8 @@ prepare_peers
 
 if [[ $bench == yes ]]; then
     measure_all
+elif [[ $soak == yes ]]; then
+    soak_all
 else
     check_all
 fi

@@ -122,6 +122,19 @@ impl Pixel {
         })
     }
 
+    /// A random error as large as that of the mean luminance: half the difference of the
+    /// means of even and odd samples. `None` while one of them has none.
+    pub fn noise(&self) -> Option<f32> {
+        let [even, odd] = self.counts.map(f64::from);
+        if even == 0.0 || odd == 0.0 {
+            return None;
+        }
+        let half = 0.5 * (self.luminance[0] / even - self.luminance[1] / odd);
+        // Halves of unequal size differ a little more than the mean wavers.
+        let unequal = 2.0 * (even * odd).sqrt() / (even + odd);
+        Some((half * unequal) as f32)
+    }
+
     /// Mean albedo of the first hits; 0 where there are none.
     pub fn albedo(&self) -> Vec3 {
         self.albedo / self.hits.max(1) as f32

@@ -30,6 +30,16 @@ pub fn curve(x: f32) -> f32 {
     }
 }
 
+/// What the [`curve`] makes `y` of; `y` at or above 1 gives what it makes 0.999 of.
+#[inline]
+pub fn uncurve(y: f32) -> f32 {
+    if y <= IDENTITY_UP_TO {
+        return y.max(0.0);
+    }
+    let room = 1.0 - IDENTITY_UP_TO;
+    IDENTITY_UP_TO - room * ((1.0 - y.min(0.999)) / room).ln()
+}
+
 /// The sRGB transfer function of a linear value in 0..=1 (IEC 61966-2-1).
 #[inline]
 pub fn encode_srgb(linear: f32) -> f32 {
@@ -108,6 +118,15 @@ mod tests {
         }
         let slope = (curve(0.9 + 1e-3) - curve(0.9)) / 1e-3;
         assert!((slope - 1.0).abs() < 0.02, "slope behind the joint {slope}");
+    }
+
+    #[test]
+    fn the_curve_is_taken_back() {
+        for k in 0..=999 {
+            let y = k as f32 / 1000.0;
+            assert!((curve(uncurve(y)) - y).abs() < 1e-5, "at {y}");
+        }
+        assert!(uncurve(1.0).is_finite() && uncurve(-1.0) == 0.0);
     }
 
     #[test]

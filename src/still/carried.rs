@@ -182,6 +182,30 @@ impl Sighted {
     }
 }
 
+impl Sighted {
+    /// This first sight as tracing made `traced` of `before`, which is the same cloth in
+    /// the same light from another distance: yarn by yarn and side by side, so that no
+    /// border shows. `None` where the sizes of `before` do not agree.
+    pub fn as_traced(&self, before: &Self, traced: &[u8]) -> Option<Vec<u8>> {
+        let sizes =
+            [traced.len(), before.rgba.len()].map(|length| length == before.places.len() * 4);
+        if sizes.contains(&false) || before.places.is_empty() {
+            return None;
+        }
+        let light = Light::new();
+        let known = Known::of(before, traced, &light);
+        let mut rgba = self.rgba.clone();
+        rgba.par_chunks_mut(4)
+            .zip(&self.places)
+            .filter(|(_, place)| place.cell != NOWHERE)
+            .for_each(|(pixel, place)| {
+                let seen = light.of(pixel);
+                light.put(known.side_of(place).carry(seen), pixel);
+            });
+        Some(rgba)
+    }
+}
+
 /// Between bytes and linear light times alpha.
 struct Light {
     linear: [f32; 256],
@@ -374,6 +398,12 @@ impl Known {
         self.all += part.all;
     }
 
+    /// What tracing made of first sight where the same yarn of the same pair is up.
+    fn side_of(&self, place: &Place) -> Traced {
+        let whole = self.all.mean(&Traced::default());
+        (self.sides.get(side(place))).map_or(whole, |sum| sum.mean(&whole))
+    }
+
     fn reader(&self) -> Reader<'_> {
         Reader {
             known: self,
@@ -418,8 +448,7 @@ impl Reader<'_> {
     /// What tracing made of first sight in crossings like this one.
     fn traced(&self, place: &Place) -> Traced {
         let known = self.known;
-        let whole = known.all.mean(&Traced::default());
-        let sided = (known.sides.get(side(place))).map_or(whole, |sum| sum.mean(&whole));
+        let sided = known.side_of(place);
         (place.cell_index())
             .and_then(|cell| known.crossings.get(crossing(place, cell)))
             .map_or(sided, |sum| sum.mean(&sided))

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::carried::{Place, Sighted};
 use super::engine::Engine;
-use super::picture::{Pass, camera, lights};
+use super::picture::{Content, Pass, camera, lights};
 use super::prepare::coloured;
 use super::request::LightChoice;
 use super::{StillError, StillRequest};
@@ -22,7 +22,7 @@ use crate::cloth::{FaceRelief, FaceTable, YarnClasses};
 use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
 use crate::job::Job;
-use crate::render::{Camera, Tone, View};
+use crate::render::{Backing, Camera, Tone, View};
 use crate::synthesis::{Catalogue, Side, key_of};
 
 /// Samples a pixel, each way, where crossings are smaller than pixels.
@@ -34,6 +34,10 @@ const MOST_PAIRS: usize = 1024;
 /// Places of the curve from light to display values, and the light it reaches to.
 const CURVE: usize = 1 << 13;
 const BRIGHTEST: f32 = 2.0;
+/// Brightness of more of the same cloth seen through a gap, beside that of the cloth.
+const BENEATH: f32 = 0.4;
+/// Light of a sheet of paper behind cloth.
+const PAPER: f32 = 0.7;
 
 /// The tables of lights and pairs of yarns, made once and kept.
 #[derive(Default)]
@@ -123,6 +127,7 @@ struct Sight<'d> {
     level: usize,
     samples: usize,
     curve: Vec<u8>,
+    backing: Backing,
 }
 
 /// A crossing made ready.
@@ -153,10 +158,10 @@ impl Engine for FirstSight {
         on_pass(&Pass {
             width: request.width,
             height: request.height,
-            rgba: &sighted.rgba,
             spp: 0,
             seconds: begun.elapsed().as_secs_f64(),
             error: None,
+            content: Content::Sighted(&sighted.rgba),
         });
         Ok(())
     }
@@ -250,6 +255,7 @@ impl FirstSight {
             level: FaceTable::level(pixels),
             samples: ((1.0 / pixels).ceil() as usize).clamp(1, MOST_SAMPLES),
             curve,
+            backing: request.backing,
         })
     }
 }
@@ -399,11 +405,21 @@ impl Sight<'_> {
         if !(cover > 0.0) {
             return;
         }
-        let places = (light / cover).clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST))
-            * ((CURVE - 1) as f32 / BRIGHTEST);
+        let (own, share) = (light / cover, cover / samples as f32);
+        let seen = match self.backing {
+            Backing::None => own,
+            Backing::White => own.lerp(Vec3::splat(PAPER), 1.0 - share),
+            Backing::Black => own * share,
+            Backing::Itself => own * (share + BENEATH * (1.0 - share)),
+        };
+        let places =
+            seen.clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST)) * ((CURVE - 1) as f32 / BRIGHTEST);
         for (byte, place) in pixel.iter_mut().zip(places.to_array()) {
             *byte = self.curve[(place as usize).min(CURVE - 1)];
         }
-        pixel[3] = super::picture::byte(cover / samples as f32);
+        pixel[3] = match self.backing {
+            Backing::None => super::picture::byte(share),
+            _ => u8::MAX,
+        };
     }
 }

@@ -13,9 +13,11 @@ mod first_sight;
 mod grid;
 mod part;
 mod picture;
+mod planes;
 mod prepare;
 mod request;
 mod sheet;
+mod standing;
 
 pub use carried::{Carried, Sighted};
 pub use effects::{DIALS, DialError, EFFECTS};
@@ -23,12 +25,13 @@ pub use engine::Engine;
 pub use first_sight::{FirstSight, SightTables};
 pub use grid::{render_grid, scene_files};
 pub use part::check_view;
-pub use picture::{Pass, Still, render, render_still, usual_width_mm};
+pub use picture::{Pass, Still, place_on, render, render_still, usual_width_mm};
 pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};
 pub use request::{
     EffectBase, EffectChoice, Heading, LightChoice, StillReport, StillRequest, Stop,
 };
 pub use sheet::{AS_DESIGNED, Sheet, SheetPlace, render_sheet};
+pub use standing::Standing;
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,6 @@
 //! The picture of a prepared cloth, pass by pass.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -38,20 +39,60 @@ pub fn usual_width_mm(view: View, design: &Design) -> f32 {
     }
 }
 
-/// The picture so far.
+/// The picture so far. What it shows is worked out when it is asked for.
 pub struct Pass<'p> {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// sRGB with straight alpha, top row first.
-    pub rgba: &'p [u8],
     /// Samples in every pixel.
     pub spp: u32,
     /// Seconds of rendering.
     pub seconds: f64,
     /// Error so far.
     pub error: Option<f64>,
+    pub(super) content: Content<'p>,
+}
+
+/// What a pass is made of.
+#[derive(Clone, Copy)]
+pub(super) enum Content<'p> {
+    /// sRGB with straight alpha, top row first.
+    Sighted(&'p [u8]),
+    /// A film, how it is shown, and whether it is denoised for that.
+    Traced(&'p Film, Tone, bool),
+}
+
+impl<'p> Pass<'p> {
+    /// sRGB with straight alpha, top row first.
+    pub fn rgba(&self) -> Cow<'p, [u8]> {
+        let (film, tone) = match self.content {
+            Content::Sighted(rgba) => return Cow::Borrowed(rgba),
+            Content::Traced(film, tone, _) => (film, tone),
+        };
+        let picture = match self.clean(&Job::new()) {
+            Some(clean) => tone.picture_of(film, &clean),
+            None => tone.picture(film),
+        };
+        let pixels = picture.pixels.iter();
+        pixels.flat_map(|pixel| pixel.map(byte)).collect()
+    }
+
+    /// The film, where anything was traced.
+    pub fn film(&self) -> Option<&'p Film> {
+        match self.content {
+            Content::Sighted(_) => None,
+            Content::Traced(film, _, _) => Some(film),
+        }
+    }
+
+    /// The film's radiances denoised, where they are and the job is not cancelled.
+    pub fn clean(&self, job: &Job) -> Option<Vec<Vec3>> {
+        match self.content {
+            Content::Traced(film, _, true) => Denoise::default().apply(film, job).ok(),
+            _ => None,
+        }
+    }
 }
 
 /// Effects by name, and whether they are simulated.
@@ -104,6 +145,37 @@ pub(super) fn camera(design: &Design, request: &StillRequest) -> Result<Camera, 
     .map(|repeat| 0.5 * repeat as f32);
     let usual = usual_width_mm(request.view, design);
     camera_at(request, Vec3::new(x, y, 0.0), usual)
+}
+
+/// Where a picture of `request` lies on one of `before`, the same cloth seen from the same
+/// side without perspective: its upper left corner in pixels of that one, and how many of
+/// those a pixel is. `None` where the two are not such views.
+pub fn place_on(
+    design: &Design,
+    before: &StillRequest,
+    request: &StillRequest,
+) -> Option<([f32; 2], f32)> {
+    let straight = |request: &StillRequest| {
+        request.eye.is_none() && matches!(request.view, View::Face | View::Back)
+    };
+    if !(straight(before) && straight(request) && before.view == request.view) {
+        return None;
+    }
+    let cameras = [camera(design, before).ok()?, camera(design, request).ok()?];
+    let at = |camera: &Camera, x: f32, y: f32| camera.ray(x, y).origin.truncate();
+    let [before, request] = cameras;
+    let corner = at(&before, 0.0, 0.0);
+    let (across, down) = (
+        at(&before, 1.0, 0.0) - corner,
+        at(&before, 0.0, 1.0) - corner,
+    );
+    let offset = at(&request, 0.0, 0.0) - corner;
+    let step = at(&request, 1.0, 0.0) - at(&request, 0.0, 0.0);
+    let pixels = |vector: glam::Vec2, along: glam::Vec2| vector.dot(along) / along.length_squared();
+    let scale = pixels(step, across);
+    let place = [pixels(offset, across), pixels(offset, down)];
+    let sound = scale > 0.0 && scale.is_finite() && place.iter().all(|at| at.is_finite());
+    sound.then_some((place, scale))
 }
 
 /// The camera of a request that looks at `middle` and shows `usual` mm where the request
@@ -212,36 +284,14 @@ impl Shot<'_> {
             None => job.clone(),
         };
         let denoise = effects::denoises(&request.dials);
-        // A preview is denoised only as often as that takes a small part of the time.
-        let mut denoised: Option<(Instant, Duration)> = None;
         let mut show = |film: &Film, progress: &render::Progress| {
-            let due = denoised.is_none_or(|(when, cost)| when.elapsed() > 4 * cost);
-            if denoise && !due && progress.spp < settings.spp {
-                return;
-            }
-            let picture = if denoise {
-                let begun = Instant::now();
-                let Ok(clean) = Denoise::default().apply(film, &job) else {
-                    return;
-                };
-                let picture = tone.picture_of(film, &clean);
-                denoised = Some((Instant::now(), begun.elapsed()));
-                picture
-            } else {
-                tone.picture(film)
-            };
-            let rgba: Vec<u8> = picture
-                .pixels
-                .iter()
-                .flat_map(|pixel| pixel.map(byte))
-                .collect();
             on_pass(&Pass {
-                width: picture.width,
-                height: picture.height,
-                rgba: &rgba,
+                width: film.width(),
+                height: film.height(),
                 spp: progress.spp,
                 seconds: progress.seconds,
                 error: known(progress.error.error),
+                content: Content::Traced(film, tone, denoise),
             });
         };
         let outcome = render::render(scatterer, camera, lights, settings, &job, &mut show)?;
@@ -369,15 +419,22 @@ pub(super) enum Subject {
 }
 
 impl Still {
+    /// The film's radiances denoised; `None` where the request said not to, or the job is
+    /// cancelled.
+    pub fn clean(&self, job: &Job) -> Option<Vec<Vec3>> {
+        let clean = self
+            .denoise
+            .then(|| Denoise::default().apply(&self.film, job));
+        clean?.ok()
+    }
+
     /// The picture as shown: denoised unless the request said no, sRGB with straight alpha.
     pub fn picture(&self) -> png::Picture {
-        if self.denoise {
-            // Nobody cancels this one.
-            if let Ok(clean) = Denoise::default().apply(&self.film, &Job::new()) {
-                return self.tone.picture_of(&self.film, &clean);
-            }
+        // Nobody cancels this one.
+        match self.clean(&Job::new()) {
+            Some(clean) => self.tone.picture_of(&self.film, &clean),
+            None => self.tone.picture(&self.film),
         }
-        self.tone.picture(&self.film)
     }
 
     /// What the picture's file says of it.

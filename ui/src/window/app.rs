@@ -117,6 +117,7 @@ impl App {
             #[cfg(test)]
             spent: super::tests::Spent::default(),
         };
+        app.preview.quality = app.settings.quality;
         if let Some(scale) = app.settings.mm_per_point.filter(|mm| is_scale(*mm)) {
             app.preview.mm_per_point = scale;
         }
@@ -200,6 +201,7 @@ impl App {
             selection: self.draft.selection().is_some(),
             view: self.preview.view,
             light: &self.preview.light,
+            quality: self.preview.quality,
             paused: self.preview.paused,
             tool: self.draft.tool(),
             arrangement: self.draft.show.arrangement,
@@ -237,6 +239,7 @@ impl App {
             Some(Choice::Preset(name)) => self.leave_for(&ctx, super::asking::Next::Preset(name)),
             Some(Choice::Recent(path)) => self.leave_for(&ctx, super::asking::Next::File(path)),
             Some(Choice::Light(preset)) => self.set_light(preset),
+            Some(Choice::Quality(quality)) => self.preview.refine_until(quality),
             None => {}
         }
     }
@@ -256,6 +259,8 @@ impl App {
                 phase: &phase,
                 building: self.preview.building(),
                 paused: self.preview.paused,
+                hidden: self.preview.is_hidden(),
+                quality: self.preview.quality,
                 export: self.export.progress().or_else(|| self.volume.progress()),
                 files: self.files.at_work(),
                 crossing: crossing.as_deref(),
@@ -321,6 +326,7 @@ impl App {
         self.settings.ghosts = show.ghosts;
         self.settings.long_floats = show.long_floats;
         self.settings.navigator = show.navigator;
+        self.settings.quality = self.preview.quality;
         self.write_settings();
     }
 
@@ -363,6 +369,8 @@ impl eframe::App for App {
         #[cfg(test)]
         let begun = super::tests::Clocks::now();
         self.mind_device();
+        let visible = ctx.input(|input| input.viewport().visible());
+        self.preview.set_hidden(visible == Some(false));
         if let Some(session) = &self.session {
             self.autosave.keep(ctx, session);
         }

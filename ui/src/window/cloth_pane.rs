@@ -38,8 +38,6 @@ pub struct Shown {
 #[derive(Default)]
 pub struct ClothPane {
     pub shown: Option<Shown>,
-    /// First sight of where the eye has moved since.
-    under: Option<(StillRequest, TextureHandle)>,
 }
 
 /// What is marked on the cloth: a crossing's left, lower, right and upper border, mm.
@@ -49,19 +47,12 @@ impl ClothPane {
     /// Forgets its pictures.
     pub fn forget(&mut self) {
         self.shown = None;
-        self.under = None;
     }
 
     /// Takes a newer picture.
     pub fn take(&mut self, ctx: &egui::Context, picture: Picture) {
         let image = Arc::new(picture.image);
         let data = || egui::ImageData::Color(Arc::clone(&image));
-        if picture.under && self.shown.is_some() {
-            let texture = ctx.load_texture("first sight", data(), TextureOptions::LINEAR);
-            self.under = Some((picture.still, texture));
-            return;
-        }
-        self.under = None;
         let texture = match self.shown.take() {
             Some(mut shown) => {
                 shown.texture.set(data(), TextureOptions::LINEAR);
@@ -97,9 +88,6 @@ impl ClothPane {
         move_view(ui, &response, pane, view);
         let painter = ui.painter_at(pane);
         painter.rect_filled(pane, 0.0, tokens::SURROUND);
-        if let Some((still, texture)) = &self.under {
-            draw_picture(&painter, pane, *view, still, texture);
-        }
         if let Some(shown) = &self.shown {
             draw_picture(&painter, pane, *view, &shown.still, &shown.texture);
             scale_bar_ui(ui, pane, view);

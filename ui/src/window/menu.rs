@@ -10,6 +10,7 @@ use pickglass::still::LightChoice;
 
 use super::cloth::sheet::Kind as SheetKind;
 use super::dialog;
+use super::worker::{LONGEST, Quality};
 use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
 use crate::tokens::{self, Palette};
 
@@ -19,6 +20,7 @@ pub enum Choice {
     Preset(&'static str),
     Recent(PathBuf),
     Light(&'static str),
+    Quality(Quality),
 }
 
 /// What the menus show as chosen, and what can be done now.
@@ -30,6 +32,7 @@ pub struct Situation<'s> {
     pub selection: bool,
     pub view: View,
     pub light: &'s LightChoice,
+    pub quality: Quality,
     pub paused: bool,
     pub tool: Tool,
     pub arrangement: DraftLayout,
@@ -163,6 +166,7 @@ fn menu_ui(ui: &mut egui::Ui, menu: Menu, situation: &Situation<'_>) -> Option<C
     if menu == Menu::View {
         ui.separator();
         choice = lights_ui(ui, situation.light).or(choice);
+        choice = quality_ui(ui, situation.quality).or(choice);
     }
     choice
 }
@@ -225,6 +229,25 @@ fn lights_ui(ui: &mut egui::Ui, light: &LightChoice) -> Option<Choice> {
             let on = matches!(light, LightChoice::Preset(current) if current == preset);
             if ui.add(Button::selectable(on, preset)).clicked() {
                 choice = Some(Choice::Light(preset));
+                ui.close();
+            }
+        }
+    });
+    choice
+}
+
+fn quality_ui(ui: &mut egui::Ui, current: Quality) -> Option<Choice> {
+    let mut choice = None;
+    let tip = format!(
+        "When the picture has so little noise left, before denoising, it is done; and after {:.0} \
+         minutes",
+        LONGEST / 60.0
+    );
+    ui.menu_button("Refine until", |ui| {
+        for quality in Quality::ALL {
+            let button = Button::selectable(quality == current, quality.says());
+            if ui.add(button).on_hover_text(&tip).clicked() {
+                choice = Some(Choice::Quality(quality));
                 ui.close();
             }
         }

@@ -17,7 +17,7 @@ use super::cloth_pane::{ClothPane, KEY_STEP};
 use super::laid::Laid;
 use super::toasts::Grade;
 use super::view::ClothView;
-use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest};
+use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest, Quality};
 use crate::command_table::{Command, Toward};
 use crate::tokens::{self, Palette};
 
@@ -56,6 +56,8 @@ impl Default for PreviewSettings {
 pub struct Preview {
     pub view: View,
     pub light: LightChoice,
+    /// Until when pictures are refined.
+    pub quality: Quality,
     pub paused: bool,
     pub pane: ClothPane,
     /// The crossing that is marked on the cloth, as in every view.
@@ -95,6 +97,7 @@ impl Preview {
         Ok(Self {
             view: View::Face,
             light: LightChoice::default(),
+            quality: Quality::default(),
             paused: false,
             pane: ClothPane::default(),
             marked: None,
@@ -163,6 +166,24 @@ impl Preview {
     /// What the worker is at.
     pub fn phase(&self) -> Phase {
         self.worker.phase()
+    }
+
+    /// Refines until pictures are as good as this.
+    pub fn refine_until(&mut self, quality: Quality) {
+        if self.quality != quality {
+            self.quality = quality;
+            self.asked = None;
+        }
+    }
+
+    /// Refining waits while nobody sees the window.
+    pub fn set_hidden(&self, hidden: bool) {
+        self.worker.set_hidden(hidden);
+    }
+
+    /// Whether it waits for that.
+    pub fn is_hidden(&self) -> bool {
+        self.worker.is_hidden()
     }
 
     /// How far the building of exemplars is.
@@ -464,6 +485,7 @@ impl Preview {
             design: std::sync::Arc::clone(&laid.design),
             drawdown: std::sync::Arc::clone(&laid.drawdown),
             still,
+            quality: self.quality,
             blank,
         });
     }

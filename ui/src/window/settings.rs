@@ -9,6 +9,7 @@ use pickglass::formats::atomic;
 use serde::{Deserialize, Serialize};
 
 use super::layout::KeptLayout;
+use super::worker::Quality;
 use crate::command_table::DraftLayout;
 
 /// The most recent files that are remembered.
@@ -30,6 +31,8 @@ pub struct Settings {
     pub ghosts: bool,
     pub long_floats: bool,
     pub navigator: bool,
+    /// Until when pictures are refined.
+    pub quality: Quality,
     /// Millimetres a point of the screen, where a card was held against it.
     pub mm_per_point: Option<f32>,
     /// Newest first.
@@ -56,6 +59,7 @@ impl Default for Settings {
             ghosts: true,
             long_floats: false,
             navigator: false,
+            quality: Quality::default(),
             mm_per_point: None,
             references: Vec::new(),
         }

@@ -6,7 +6,7 @@ use pickglass::design::Design;
 use super::cloth_pane::Shown;
 use super::icons;
 use super::toasts::Grade;
-use super::worker::{Building, Fibres, Phase};
+use super::worker::{Building, Done, Fibres, LONGEST, Phase, Quality};
 use crate::tokens::{self, Palette};
 
 /// What the status line tells of.
@@ -16,6 +16,9 @@ pub struct Status<'s> {
     pub phase: &'s Phase,
     pub building: Option<Building>,
     pub paused: bool,
+    /// Refining waits to be seen.
+    pub hidden: bool,
+    pub quality: Quality,
     pub export: Option<String>,
     /// The file that is being read or written, in words.
     pub files: Option<String>,
@@ -100,7 +103,9 @@ fn quality(shown: &Shown, status: &Status<'_>) -> String {
     let state = match (status.phase, shown.fibres) {
         _ if status.paused => " · paused".to_owned(),
         (Phase::Stopped, _) => " · stopped".to_owned(),
-        (Phase::Done, _) => " · done".to_owned(),
+        (Phase::Done(Done::Good), _) => format!(" · done: {}", status.quality.name()),
+        (Phase::Done(Done::Long), _) => format!(" · done: {:.0} minutes", LONGEST / 60.0),
+        _ if status.hidden => " · waits while hidden".to_owned(),
         (_, Fibres::Coarse { light_error }) => {
             let light = light_error.map_or_else(String::new, |error| {
                 format!(", light ±{:.1} %", error * 100.0)

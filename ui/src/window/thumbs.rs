@@ -227,7 +227,7 @@ fn woven(
     let mut image = None;
     let done = sight.draw(&request, &Job::new(), &mut |pass| {
         let size = [pass.width as usize, pass.height as usize];
-        image = Some(ColorImage::from_rgba_unmultiplied(size, pass.rgba));
+        image = Some(ColorImage::from_rgba_unmultiplied(size, &pass.rgba()));
     });
     if let Err(error) = done {
         log::warn!("{title}: its thumbnail stays a drawdown: {error}");

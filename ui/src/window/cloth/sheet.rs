@@ -220,7 +220,7 @@ impl Sheet {
                 let mut image = None;
                 let drawn = sight.draw(&request, job, &mut |pass| {
                     let size = [pass.width as usize, pass.height as usize];
-                    image = Some(ColorImage::from_rgba_unmultiplied(size, pass.rgba));
+                    image = Some(ColorImage::from_rgba_unmultiplied(size, &pass.rgba()));
                 });
                 drawn.ok().and(image)
             };

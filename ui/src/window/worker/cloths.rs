@@ -200,6 +200,6 @@ fn take_built(
         }
     }
     drop(shared);
-    desk.bell.notify_one();
+    desk.bell.notify_all();
     (desk.wake)();
 }

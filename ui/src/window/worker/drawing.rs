@@ -1,30 +1,24 @@
-//! The pictures of one request: first sight, then traced ones, each only once it is better
-//! than what is shown.
+//! The pictures of one request: first sight, then what tracing adds to it. What is shown
+//! never gets worse: [`Standing`] decides how much of a traced picture is believed.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pickglass::design::WeavePattern;
 use pickglass::job::Job;
 use pickglass::still::{
-    Engine, FirstSight, Pass, SightTables, Sighted, StillError, StillRequest, Stop,
+    FirstSight, PreparedCloth, SightTables, Sighted, Standing, StillError, StillRequest, Stop,
+    place_on,
 };
 
-use super::{Aim, Desk, Fibres, Picture, PreviewRequest};
+use super::{Aim, Desk, Fibres, LONGEST, Picture, PreviewRequest};
 
-/// A preview ends at this error, or after this many passes.
-const GOOD_ERROR: f64 = 0.005;
-const MOST_PASSES: u32 = 4096;
-/// First sight looks about as good as a traced picture of so many paths a pixel.
-const SIGHT_WORTH: f64 = 0.25;
-/// A picture in which an edit was put in by first sight counts at most as so many paths a
-/// pixel, so that the edit is soon traced as well.
-const EDITED_WORTH: f64 = 4.0;
-/// First sight shows each crossing: where the whole picture could, one of a coarser level
-/// is better only with so many pixels a crossing.
-const RESOLVED: f32 = 4.0;
-/// Beyond this share of changed pixels the whole picture counts as first sight.
-const MOSTLY_CHANGED: f64 = 0.2;
+/// Tracing goes on so many times as long as it takes to show what it found, before it is
+/// shown again.
+pub(super) const PATIENCE: u32 = 4;
+/// An old picture serves as it is where its pixels are no larger than the new ones, within
+/// what nobody sees.
+const AS_SHARP: f32 = 0.98;
 
 /// What is on the screen, to build the next picture on.
 pub(super) struct OnScreen {
@@ -34,26 +28,65 @@ pub(super) struct OnScreen {
     drawdown: Arc<WeavePattern>,
     /// First sight of the same.
     sight: Arc<Sighted>,
-    /// The picture of the request's size, where it has been traced at that size.
-    traced: Option<Vec<u8>>,
-    /// Paths in the picture.
-    paths: f64,
+    standing: Standing,
+    /// Whether anything of it was traced.
+    traced: bool,
 }
 
 impl OnScreen {
     fn same_place(&self, request: &PreviewRequest) -> bool {
-        let place = |still: &StillRequest| StillRequest {
+        self.same_look(request)
+            && (self.still.width, self.still.height) == (request.still.width, request.still.height)
+            && (self.still.centre_mm, self.still.width_mm)
+                == (request.still.centre_mm, request.still.width_mm)
+    }
+
+    /// The same side in the same light, wherever and from whatever distance.
+    fn same_look(&self, request: &PreviewRequest) -> bool {
+        let look = |still: &StillRequest| StillRequest {
             stop: Stop::default(),
             colourway: None,
+            width: 0,
+            height: 0,
+            centre_mm: None,
+            width_mm: None,
             ..still.clone()
         };
-        self.aim == request.aim && place(&self.still) == place(&request.still)
+        self.aim == request.aim && look(&self.still) == look(&request.still)
     }
 
     fn same_cloth(&self, request: &PreviewRequest) -> bool {
         Arc::ptr_eq(&self.design, &request.design)
             && Arc::ptr_eq(&self.drawdown, &request.drawdown)
             && self.still.colourway == request.still.colourway
+    }
+
+    /// What is known of a new first sight from this picture; `None` = nothing.
+    fn carried(&self, request: &PreviewRequest, sight: &Sighted) -> Option<Standing> {
+        if !self.traced {
+            return None;
+        }
+        let [width, height] = [request.still.width, request.still.height];
+        if self.same_place(request) {
+            let carried = self.sight.carried_to(sight, &self.standing.rgba())?;
+            return Standing::of_rgba(width, height, &carried.rgba);
+        }
+        if !(self.same_look(request) && self.same_cloth(request)) {
+            return None;
+        }
+        // The eye moved. Colours are those of tracing; where the old picture is as sharp,
+        // it is cut, and where it is coarser, it tells of large places alone.
+        let rgba = sight.as_traced(&self.sight, &self.standing.rgba())?;
+        let new = Standing::of_rgba(width, height, &rgba)?;
+        let Some((corner, scale)) = place_on(&request.design, &self.still, &request.still) else {
+            return Some(new);
+        };
+        let old = self.standing.seen_from([width, height], corner, scale);
+        Some(if scale >= AS_SHARP {
+            old.over(&new)
+        } else {
+            new.coloured_as(&old, 2.0 / scale)
+        })
     }
 }
 
@@ -63,69 +96,59 @@ pub(super) struct Drawing<'r> {
     pub request: &'r PreviewRequest,
     pub job: &'r Job,
     pub begun: Instant,
+    /// [`PATIENCE`]; 0 = every pass is shown.
+    pub patience: u32,
+}
+
+/// What tracing came to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Traced {
+    /// Seconds a pass took.
+    pub pass_seconds: f64,
+    /// Samples a pixel.
+    pub spp: u32,
+    /// Error of the film.
+    pub error: Option<f64>,
 }
 
 impl Drawing<'_> {
-    fn pixels(&self) -> f64 {
-        f64::from(self.request.still.width) * f64::from(self.request.still.height)
-    }
-
-    /// Shows the request at first sight; where only an edit is new, what it does not touch
-    /// keeps the picture that is shown, and the rest learns from it.
+    /// Shows the request at first sight; where the eye moved, or only an edit is new, what
+    /// is known from the picture that is shown goes into it.
     pub fn first_sight(
         &self,
         tables: &Arc<SightTables>,
         screen: &mut Option<OnScreen>,
     ) -> Result<(), StillError> {
         let request = self.request;
-        let known = screen.take().filter(|_| !request.blank);
-        if let Some(known) = known.as_ref().filter(|known| known.same_place(request))
+        if !request.blank
+            && let Some(known) = screen.as_mut()
+            && known.same_place(request)
             && known.same_cloth(request)
         {
             // The very same picture goes on, after a pause or with better exemplars.
-            *screen = Some(OnScreen {
-                still: request.still.clone(),
-                aim: request.aim,
-                design: Arc::clone(&request.design),
-                drawdown: Arc::clone(&request.drawdown),
-                sight: Arc::clone(&known.sight),
-                traced: known.traced.clone(),
-                paths: known.paths.min(self.pixels() * EDITED_WORTH),
-            });
+            known.still = request.still.clone();
             return Ok(());
         }
+        let known = screen.take().filter(|_| !request.blank);
         let engine = FirstSight::new(
             Arc::clone(&request.design),
             Arc::clone(&request.drawdown),
             Arc::clone(tables),
         );
         let sight = engine.look(&request.still, self.job)?;
-        let worth = self.pixels() * SIGHT_WORTH;
-        let (mut traced, mut paths) = (None, worth);
-        let mut under = false;
-        if let Some(known) = &known {
-            if known.same_place(request) {
-                if let Some(picture) = known.traced.as_ref()
-                    && let Some(carried) = known.sight.carried_to(&sight, picture)
-                {
-                    if carried.changed < MOSTLY_CHANGED {
-                        paths = known.paths.min(self.pixels() * EDITED_WORTH).max(worth);
-                    }
-                    traced = Some(carried.rgba);
-                }
-            } else {
-                // The eye moved: the picture that is shown lies over what is new.
-                under = known.aim == request.aim && known.same_cloth(request);
-            }
-        }
-        let shown = traced.as_ref().unwrap_or(&sight.rgba);
-        self.send(
-            [request.still.width, request.still.height],
-            shown,
-            0,
-            None,
+        let carried = known.and_then(|known| known.carried(request, &sight));
+        let traced = carried.is_some();
+        let [width, height] = [request.still.width, request.still.height];
+        let Some(standing) = carried.or_else(|| Standing::of_rgba(width, height, &sight.rgba))
+        else {
+            return Ok(());
+        };
+        let nothing = Traced::default();
+        self.show(
+            &standing,
+            &nothing,
+            false,
             Fibres::Coarse { light_error: None },
-            under,
         );
         *screen = Some(OnScreen {
             still: request.still.clone(),
@@ -133,96 +156,110 @@ impl Drawing<'_> {
             design: Arc::clone(&request.design),
             drawdown: Arc::clone(&request.drawdown),
             sight: Arc::new(sight),
+            standing,
             traced,
-            paths,
         });
         Ok(())
     }
 
-    /// Traces at 1/2^level of the size for `seconds`, at least one pass; at level 0 until
-    /// the picture is good. Returns the seconds a pass took.
+    /// Traces at 1/2^level of the size until `stop`, at least one pass, and shows what that
+    /// adds to the picture that stands.
     pub fn trace(
         &self,
-        cloth: &dyn Engine,
+        cloth: &PreparedCloth,
         fibres: Fibres,
         level: u32,
-        seconds: f64,
+        stop: Stop,
         screen: &mut Option<OnScreen>,
-    ) -> Result<f64, StillError> {
+    ) -> Result<Traced, StillError> {
         let mut still = self.request.still.clone();
         still.width = (still.width >> level).max(1);
         still.height = (still.height >> level).max(1);
-        still.stop = if level > 0 {
-            Stop {
-                seconds: Some(seconds.max(0.0)),
-                ..Stop::default()
+        still.stop = stop;
+        let mut outcome = Traced::default();
+        let mut better: Option<Standing> = None;
+        let mut last: Option<(Instant, Duration)> = None;
+        let (begun, mut hidden, mut long) = (Instant::now(), Duration::ZERO, false);
+        let (mut last_shown, mut failed, exposure) = (0, None, still.exposure_ev);
+        let stands = screen.as_ref().map(|screen| screen.standing.clone());
+        let drawn = render(cloth, &still, self.job, &mut |pass| {
+            outcome = Traced {
+                pass_seconds: pass.seconds / f64::from(pass.spp.max(1)),
+                spp: pass.spp,
+                error: pass.error,
+            };
+            hidden += self.wait_while_hidden();
+            // Time in which nobody looked does not count.
+            if (begun.elapsed() - hidden).as_secs_f64() > LONGEST {
+                long = true;
+                last = None;
             }
-        } else {
-            Stop {
-                spp: Some(MOST_PASSES),
-                error: Some(GOOD_ERROR),
-                ..Stop::default()
+            let due = |&(when, cost): &(Instant, Duration)| when.elapsed() >= self.patience * cost;
+            if !last.as_ref().is_none_or(due) || self.job.check().is_err() {
+                return;
             }
-        };
-        let mut pass_seconds = 0.0;
-        cloth.draw(&still, self.job, &mut |pass| {
-            pass_seconds = pass.seconds / f64::from(pass.spp.max(1));
-            let paths = f64::from(pass.spp) * f64::from(pass.width) * f64::from(pass.height);
-            let before = screen.as_ref().map_or(0.0, |screen| screen.paths);
-            // A finer picture is shown once it is no noisier than the coarser one.
-            let better = 2.0 * paths >= before && self.resolves(level);
-            if better && self.job.check().is_ok() {
-                self.show(pass, level == 0, fibres);
-                if let Some(screen) = screen {
-                    screen.paths = paths;
-                    screen.traced = enlarged(pass, &self.request.still);
+            let showing = Instant::now();
+            let improved = stands.as_ref().zip(pass.film()).and_then(|(stands, film)| {
+                let clean = pass.clean(self.job);
+                stands.improved(film, clean.as_deref(), exposure)
+            });
+            if let Some(improved) = improved {
+                self.show(&improved, &outcome, level == 0, fibres);
+                better = Some(improved);
+                last_shown = outcome.spp;
+            }
+            if long {
+                self.job.cancel();
+            }
+            last = Some((Instant::now(), showing.elapsed()));
+        });
+        match drawn {
+            // The newest pass was perhaps not shown for want of time.
+            Ok(still) if last_shown != outcome.spp => {
+                let clean = still.clean(self.job);
+                let improved = stands
+                    .as_ref()
+                    .and_then(|stands| stands.improved(&still.film, clean.as_deref(), exposure));
+                if let Some(improved) = improved {
+                    self.show(&improved, &outcome, level == 0, fibres);
+                    better = Some(improved);
                 }
             }
-        })?;
-        Ok(pass_seconds)
+            Err(error) if !long => failed = Some(error),
+            _ => {}
+        }
+        if let (Some(screen), Some(better)) = (screen, better) {
+            screen.standing = better;
+            screen.traced = true;
+        }
+        failed.map_or(Ok(outcome), Err)
     }
 
-    /// Whether a level shows crossings, where they can be told apart at all.
-    fn resolves(&self, level: u32) -> bool {
-        let still = &self.request.still;
-        let Some(width_mm) = still.width_mm else {
-            return true;
-        };
-        let sett = self.request.design.sett();
-        let pitch = (sett.ends.mean_pitch_mm()).min(sett.picks.mean_pitch_mm());
-        let crossing = pitch / width_mm.max(1e-6) * still.width as f32;
-        crossing < RESOLVED || crossing / (1u64 << level.min(32)) as f32 >= RESOLVED
+    /// Nobody looks: the film waits, with all that it has. Returns how long it did.
+    fn wait_while_hidden(&self) -> Duration {
+        let begun = Instant::now();
+        let mut shared = self.desk.lock();
+        while shared.hidden && self.job.check().is_ok() {
+            shared = self.desk.wait(shared);
+        }
+        begun.elapsed()
     }
 
-    fn show(&self, pass: &Pass<'_>, full_size: bool, fibres: Fibres) {
-        let size = [pass.width, pass.height];
-        let error = (pass.error, full_size);
-        self.send(size, pass.rgba, pass.spp, Some(error), fibres, false);
-    }
-
-    fn send(
-        &self,
-        size: [u32; 2],
-        rgba: &[u8],
-        spp: u32,
-        traced: Option<(Option<f64>, bool)>,
-        fibres: Fibres,
-        under: bool,
-    ) {
-        let size = size.map(|side| side as usize);
+    fn show(&self, picture: &Standing, traced: &Traced, full_size: bool, fibres: Fibres) {
+        let size = picture.size().map(|side| side as usize);
+        let rgba = picture.rgba();
         if rgba.len() != size[0] * size[1] * 4 {
             return;
         }
         let picture = Picture {
             generation: self.request.generation,
-            image: egui::ColorImage::from_rgba_unmultiplied(size, rgba),
+            image: egui::ColorImage::from_rgba_unmultiplied(size, &rgba),
             still: self.request.still.clone(),
-            spp,
+            spp: traced.spp,
             seconds: self.begun.elapsed().as_secs_f64(),
-            error: traced.and_then(|(error, _)| error),
-            full_size: traced.is_some_and(|(_, full_size)| full_size),
+            error: traced.error,
+            full_size,
             fibres,
-            under,
         };
         let mut shared = self.desk.lock();
         match self.request.aim {
@@ -231,73 +268,5 @@ impl Drawing<'_> {
         }
         drop(shared);
         (self.desk.wake)();
-    }
-}
-
-/// A picture of a level at the size of the request, between its pixels.
-fn enlarged(pass: &Pass<'_>, still: &StillRequest) -> Option<Vec<u8>> {
-    let (width, height) = (still.width as usize, still.height as usize);
-    let (from_width, from_height) = (pass.width as usize, pass.height as usize);
-    if pass.rgba.len() != from_width * from_height * 4 || pass.rgba.is_empty() {
-        return None;
-    }
-    if (from_width, from_height) == (width, height) {
-        return Some(pass.rgba.to_vec());
-    }
-    // Place of a pixel's middle in the smaller picture: two neighbours and how far between.
-    let places = |count: usize, from: usize| -> Vec<(usize, usize, u32)> {
-        (0..count)
-            .map(|at| {
-                let place = (at as f32 + 0.5) * from as f32 / count as f32 - 0.5;
-                let low = place.floor().clamp(0.0, (from - 1) as f32);
-                let share = ((place - low).clamp(0.0, 1.0) * 256.0) as u32;
-                (low as usize, (low as usize + 1).min(from - 1), share)
-            })
-            .collect()
-    };
-    let (columns, rows) = (places(width, from_width), places(height, from_height));
-    let mut rgba = Vec::with_capacity(width * height * 4);
-    for (below, above, v) in rows {
-        for &(left, right, u) in &columns {
-            for channel in 0..4 {
-                let at =
-                    |x: usize, y: usize| u32::from(pass.rgba[(y * from_width + x) * 4 + channel]);
-                let low = at(left, below) * (256 - u) + at(right, below) * u;
-                let high = at(left, above) * (256 - u) + at(right, above) * u;
-                rgba.push(((low * (256 - v) + high * v) >> 16) as u8);
-            }
-        }
-    }
-    Some(rgba)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn enlarging_keeps_flat_colours_and_runs_between_others() {
-        let rgba = [[10, 20, 30, 255], [210, 20, 30, 255]].concat();
-        let pass = Pass {
-            width: 2,
-            height: 1,
-            rgba: &rgba,
-            spp: 1,
-            seconds: 0.0,
-            error: None,
-        };
-        let still = StillRequest {
-            width: 8,
-            height: 3,
-            ..StillRequest::default()
-        };
-        let large = enlarged(&pass, &still).expect("a picture");
-        assert_eq!(large.len(), 8 * 3 * 4);
-        let reds: Vec<u8> = large[..32].chunks(4).map(|pixel| pixel[0]).collect();
-        assert!(
-            reds.is_sorted() && reds[0] == 10 && reds[7] == 210,
-            "{reds:?}"
-        );
-        assert!(large.chunks(4).all(|pixel| pixel[1..] == [20, 30, 255]));
     }
 }

@@ -1,15 +1,17 @@
 //! The threads that draw the cloth: latest request wins, every send wakes the window.
 //!
 //! One thread draws. A request first shows the cloth at first sight, within milliseconds
-//! and never interrupted, so that an edit or a drag always shows something; traced
-//! pictures follow, coarse ones first, each shown once it is better than what is there
-//! (`drawing`). A newer request ends the older one. The cloth follows edits; where its
+//! and never interrupted, so that an edit or a drag always shows something; tracing, coarse
+//! at first, then adds to it what it knows better (`drawing`), until the picture is as good
+//! as the person wants it, and waits while nobody sees the window. A newer request ends the older one. The cloth follows edits; where its
 //! exemplars are not at hand yet, a coarse cloth is drawn and a second thread builds them
 //! meanwhile (`cloths`). All of it gives way to the window (`threads`). Dropping the
 //! worker ends all.
 
 mod cloths;
 mod drawing;
+#[cfg(test)]
+mod never_worse;
 mod threads;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,10 +21,10 @@ use std::time::Instant;
 use pickglass::design::{Design, WeavePattern};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::{Cancelled, Job};
-use pickglass::still::{SightTables, StillError, StillRequest};
+use pickglass::still::{SightTables, StillError, StillRequest, Stop};
 
 use cloths::{Builder, Kept, cloth_of};
-use drawing::{Drawing, OnScreen};
+use drawing::{Drawing, OnScreen, PATIENCE};
 
 /// What a picture is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,6 +46,7 @@ pub struct PreviewRequest {
     pub drawdown: Arc<WeavePattern>,
     /// At full size, with `centre_mm` and `width_mm` given.
     pub still: StillRequest,
+    pub quality: Quality,
     /// Nothing is on the screen: whatever was sent before is to be shown anew.
     pub blank: bool,
 }
@@ -86,9 +89,59 @@ pub struct Picture {
     /// The size of the request, not of a coarser level.
     pub full_size: bool,
     pub fibres: Fibres,
-    /// First sight of a place that the eye moved to: the picture that is shown of the same
-    /// cloth is better and lies over it.
-    pub under: bool,
+}
+
+/// Until when a picture is refined.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize,
+)]
+pub enum Quality {
+    /// Good enough to go on designing.
+    Draft,
+    #[default]
+    Good,
+    /// To look at closely.
+    Fine,
+}
+
+impl Quality {
+    /// All, in the order in which they are offered.
+    pub const ALL: [Self; 3] = [Self::Draft, Self::Good, Self::Fine];
+
+    /// The error, before denoising, at which a picture is done.
+    pub fn error(self) -> f64 {
+        match self {
+            Self::Draft => 0.05,
+            Self::Good => 0.02,
+            Self::Fine => 0.01,
+        }
+    }
+
+    /// How good that is, in words.
+    pub fn says(self) -> String {
+        format!("{}: error {:.0} %", self.name(), 100.0 * self.error())
+    }
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Good => "good",
+            Self::Fine => "fine",
+        }
+    }
+}
+
+/// A picture is refined at most this long, seconds.
+pub const LONGEST: f64 = 300.0;
+
+/// Why a picture is done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Done {
+    /// It is as good as was asked for.
+    Good,
+    /// It was refined as long as any is.
+    Long,
 }
 
 /// What the worker is at.
@@ -99,8 +152,8 @@ pub enum Phase {
     /// Builds what the first picture needs.
     Preparing,
     Refining,
-    /// The picture is as good as asked for.
-    Done,
+    /// Refining has ended.
+    Done(Done),
     /// First sight, and no more: why the view is not traced.
     AtSight(String),
     /// Cancelled by the person.
@@ -138,6 +191,8 @@ struct Shared {
     full: Option<Kept>,
     /// Why the full cloth cannot be built.
     failure: Option<String>,
+    /// Nobody sees the window.
+    hidden: bool,
     closing: bool,
 }
 
@@ -173,6 +228,11 @@ struct Desk {
 impl Desk {
     fn lock(&self) -> MutexGuard<'_, Shared> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the bell.
+    fn wait<'d>(&'d self, shared: MutexGuard<'d, Shared>) -> MutexGuard<'d, Shared> {
+        (self.bell.wait(shared)).unwrap_or_else(PoisonError::into_inner)
     }
 
     fn set_phase(&self, phase: Phase) {
@@ -211,7 +271,7 @@ impl ClothWorker {
         shared.supersede();
         shared.next = Some(request);
         drop(shared);
-        self.desk.bell.notify_one();
+        self.desk.bell.notify_all();
     }
 
     /// Cancels the work until the next request.
@@ -220,6 +280,23 @@ impl ClothWorker {
         shared.next = None;
         shared.cancel_all();
         shared.phase = Phase::Stopped;
+        drop(shared);
+        self.desk.bell.notify_all();
+    }
+
+    /// Says whether anybody can see the window: refining waits while nobody does.
+    pub fn set_hidden(&self, hidden: bool) {
+        let mut shared = self.desk.lock();
+        if shared.hidden != hidden {
+            shared.hidden = hidden;
+            drop(shared);
+            self.desk.bell.notify_all();
+        }
+    }
+
+    /// Whether refining waits to be seen.
+    pub fn is_hidden(&self) -> bool {
+        self.desk.lock().hidden
     }
 
     /// What the worker is at.
@@ -255,7 +332,7 @@ impl Drop for ClothWorker {
         shared.next = None;
         shared.cancel_all();
         drop(shared);
-        self.desk.bell.notify_one();
+        self.desk.bell.notify_all();
     }
 }
 
@@ -305,7 +382,7 @@ fn work(desk: &Arc<Desk>) {
         let mut shared = desk.lock();
         shared.current = None;
         let phase = match outcome {
-            Ok(Ok(())) => Phase::Done,
+            Ok(Ok(done)) => Phase::Done(done),
             // A newer request or the person ended it: nothing to say.
             Ok(Err(StillError::Cancelled(_))) => Phase::Stopped,
             Ok(Err(error)) if error.is_too_wide() => Phase::AtSight(error.to_string()),
@@ -341,10 +418,7 @@ fn next_request(desk: &Desk) -> Option<(PreviewRequest, Job)> {
             });
             return Some((request, job));
         }
-        shared = desk
-            .bell
-            .wait(shared)
-            .unwrap_or_else(PoisonError::into_inner);
+        shared = desk.wait(shared);
     }
 }
 
@@ -365,7 +439,7 @@ fn serve(
     request: &PreviewRequest,
     job: &Job,
     kit: &mut Kit,
-) -> Result<(), StillError> {
+) -> Result<Done, StillError> {
     let Kit {
         coarse,
         first,
@@ -383,23 +457,40 @@ fn serve(
         request,
         job,
         begun: Instant::now(),
+        patience: PATIENCE,
     };
     drawing.first_sight(tables, screen)?;
     lower_shield(desk)?;
     let (cloth, fibres) = cloth_of(desk, request, job, coarse)?;
     desk.set_phase(Phase::Refining);
     let mut refine = || {
+        let seconds = |seconds: f64| Stop {
+            seconds: Some(seconds.max(0.0)),
+            ..Stop::default()
+        };
         let mut level = first.0;
-        let mut pass_seconds = drawing.trace(&*cloth, fibres, level, 0.0, screen)?;
-        first.learn(pass_seconds * 1e3);
+        let mut spent = 0.0;
         while level > 0 {
-            level -= 1;
             // Stay until as much time was spent as one pass of the next size will take.
-            let next_pass = 16.0 * pass_seconds;
-            let left = next_pass - drawing.begun.elapsed().as_secs_f64();
-            pass_seconds = drawing.trace(&*cloth, fibres, level, left, screen)?;
+            let left = 4.0 * spent - drawing.begun.elapsed().as_secs_f64();
+            let traced = drawing.trace(&cloth, fibres, level, seconds(left), screen)?;
+            if spent == 0.0 {
+                first.learn(traced.pass_seconds * 1e3);
+            }
+            spent = 4.0 * traced.pass_seconds;
+            level -= 1;
         }
-        Ok(())
+        let good = request.quality.error();
+        let stop = Stop {
+            error: Some(good),
+            ..Stop::default()
+        };
+        let traced = drawing.trace(&cloth, fibres, 0, stop, screen)?;
+        if level == first.0 {
+            first.learn(traced.pass_seconds * 1e3);
+        }
+        let is_good = traced.error.is_some_and(|error| error < good);
+        Ok(if is_good { Done::Good } else { Done::Long })
     };
     match pool {
         Some(pool) => pool.install(refine),
@@ -431,6 +522,7 @@ mod tests {
             design: Arc::clone(design),
             drawdown: Arc::new(design.weave()),
             still,
+            quality: Quality::Good,
             blank: false,
         }
     }
@@ -467,6 +559,59 @@ mod tests {
         worker.request(request(1, &design));
         worker.stop();
         assert!(wait_for(&worker, |worker| worker.phase() == Phase::Stopped));
+        worker.request(request(2, &design));
+        assert!(wait_for(&worker, |worker| worker
+            .take_picture()
+            .is_some_and(|picture| picture.generation == 2)));
+    }
+
+    #[test]
+    fn refining_ends_when_the_picture_is_as_good_as_was_asked_for() {
+        let design = Opened::preset("oxford").expect("a preset").design;
+        let worker = ClothWorker::start(ExemplarStore::user(), || {}).expect("a thread");
+        let mut small = request(1, &design);
+        (small.still.width, small.still.height) = (8, 6);
+        small.quality = Quality::Draft;
+        worker.request(small);
+        assert!(wait_for(&worker, |worker| worker.phase() == Phase::Done(Done::Good)));
+        let picture = worker.take_picture().expect("a picture");
+        assert!(
+            picture
+                .error
+                .is_some_and(|error| error < Quality::Draft.error())
+        );
+        // Then it rests: nothing more comes.
+        std::thread::sleep(Duration::from_millis(50));
+        assert!(worker.take_picture().is_none());
+        assert!(Quality::ALL.is_sorted_by(|a, b| a.error() > b.error()));
+    }
+
+    #[test]
+    fn refining_waits_while_nobody_sees_it_and_then_goes_on() {
+        let design = Opened::preset("oxford").expect("a preset").design;
+        let worker = ClothWorker::start(ExemplarStore::user(), || {}).expect("a thread");
+        worker.request(request(1, &design));
+        let mut spp = 0;
+        assert!(wait_for(&worker, |worker| {
+            let picture = worker.take_picture().filter(|picture| picture.full_size);
+            spp = picture.map_or(spp, |picture| picture.spp);
+            spp > 0
+        }));
+        worker.set_hidden(true);
+        // What was under way may still come; then there is silence.
+        std::thread::sleep(Duration::from_millis(300));
+        spp = worker.take_picture().map_or(spp, |picture| picture.spp);
+        std::thread::sleep(Duration::from_millis(300));
+        assert!(worker.take_picture().is_none(), "it goes on in the dark");
+        worker.set_hidden(false);
+        let mut after = 0;
+        assert!(wait_for(&worker, |worker| {
+            after = worker.take_picture().map_or(0, |picture| picture.spp);
+            after > 0
+        }));
+        assert!(after > spp, "the film was kept: {after} after {spp}");
+        // A newer request is heard in the dark as well.
+        worker.set_hidden(true);
         worker.request(request(2, &design));
         assert!(wait_for(&worker, |worker| worker
             .take_picture()
@@ -521,7 +666,7 @@ mod tests {
         }));
         let seen = seen.expect("a picture");
         // Whatever was traced between the two looks, the edit is first seen without paths.
-        assert_eq!((seen.spp, seen.under), (0, false));
+        assert_eq!(seen.spp, 0);
         let pixels = seen.image.pixels.iter().zip(&traced.image.pixels);
         let changed = pixels.filter(|(a, b)| a != b).count();
         assert!(changed > 0, "nothing was edited");

@@ -1,0 +1,252 @@
+//! The first minute, with a number of paths in the place of a clock: no picture that is
+//! shown is worse than one that was shown before for the same request.
+
+use std::sync::{Arc, Condvar, Mutex};
+use std::time::Instant;
+
+use glam::Vec3;
+use pickglass::design::{delta_e_00, lab};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::job::Job;
+use pickglass::still::{SightTables, StillRequest, Stop, prepare_woven};
+
+use super::drawing::{Drawing, OnScreen};
+use super::{Aim, Desk, Fibres, Picture, PreviewRequest, Quality, Shared};
+use preview_views::{PreviewView, SIZE, reference, squares, visits};
+
+#[path = "../../../../tests/preview_views/mod.rs"]
+mod preview_views;
+
+/// What a picture may be worse than the least so far.
+const TIMES: f64 = 1.1;
+const MORE: f64 = 0.3;
+
+/// Mean difference to a reference.
+fn off(shown: &[Vec3], reference: &[Vec3]) -> f64 {
+    assert_eq!(shown.len(), reference.len());
+    let sum: f64 = shown
+        .iter()
+        .zip(reference)
+        .map(|(&a, &b)| delta_e_00(lab(a), lab(b)))
+        .sum();
+    sum / shown.len() as f64
+}
+
+fn squares_of(picture: &Picture) -> Vec<Vec3> {
+    let pixels: Vec<[f32; 4]> = (picture.image.pixels.iter())
+        .map(|pixel| {
+            pixel
+                .to_srgba_unmultiplied()
+                .map(|byte| f32::from(byte) / 255.0)
+        })
+        .collect();
+    squares(picture.image.size[0], &pixels)
+}
+
+/// A desk that keeps every picture that is put on it.
+fn desk() -> (Arc<Desk>, Arc<Mutex<Vec<Picture>>>) {
+    let seen: Arc<Mutex<Vec<Picture>>> = Arc::default();
+    let desk = Arc::new_cyclic(|desk: &std::sync::Weak<Desk>| {
+        let (desk, seen) = (desk.clone(), Arc::clone(&seen));
+        Desk {
+            shared: Mutex::new(Shared::default()),
+            bell: Condvar::new(),
+            wake: Box::new(move || {
+                if let Some(picture) = desk.upgrade().and_then(|desk| desk.lock().picture.take()) {
+                    seen.lock().expect("seen").push(picture);
+                }
+            }),
+            store: ExemplarStore::user(),
+        }
+    });
+    (desk, seen)
+}
+
+fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
+    PreviewRequest {
+        generation,
+        aim: Aim::Pane,
+        design: Arc::clone(&view.design),
+        drawdown: Arc::clone(&view.drawdown),
+        still: StillRequest {
+            dials: vec![("pass-spp".to_owned(), "1".to_owned())],
+            ..view.still.clone()
+        },
+        quality: Quality::Good,
+        blank: false,
+    }
+}
+
+/// Steps of one request: level of voxels, halvings of the size, samples a pixel.
+const STEPS: [(&str, u32, u32); 5] = [
+    ("3", 3, 8),
+    ("3", 2, 8),
+    ("0", 2, 8),
+    ("0", 1, 4),
+    ("0", 0, 8),
+];
+
+/// What is shown of a view, and the films alone, as they were shown before: whatever was
+/// traced replaced what stood there.
+struct Watched {
+    shown: Vec<f64>,
+    films_alone: Vec<f64>,
+}
+
+fn watch(
+    view: &PreviewView,
+    steps: &[(&str, u32, u32)],
+    tables: &Arc<SightTables>,
+    screen: &mut Option<OnScreen>,
+) -> Option<Watched> {
+    let reference = reference(&view.name)?;
+    let (desk, seen) = desk();
+    let request = request_of(view, 1);
+    let job = Job::new();
+    let drawing = Drawing {
+        desk: &desk,
+        request: &request,
+        job: &job,
+        begun: Instant::now(),
+        patience: 0,
+    };
+    drawing.first_sight(tables, screen).expect("first sight");
+    let mut films_alone = Vec::new();
+    for &(voxels, level, spp) in steps {
+        let mut still = request.still.clone();
+        still.dials.push(("level".to_owned(), voxels.to_owned()));
+        let cloth = prepare_woven(&view.design, &view.drawdown, &still, &desk.store, &job);
+        let cloth = cloth.expect("a cloth");
+        let fibres = match voxels {
+            "0" => Fibres::Full,
+            _ => Fibres::Coarse {
+                light_error: cloth.cloth().light_error(),
+            },
+        };
+        let stop = Stop {
+            spp: Some(spp),
+            ..Stop::default()
+        };
+        drawing
+            .trace(&cloth, fibres, level, stop, screen)
+            .expect("traced");
+        if level == 0 {
+            let mut one = still.clone();
+            one.stop.spp = Some(2);
+            pickglass::still::render(&cloth, &one, &job, &mut |pass| {
+                let rgba = pass.rgba();
+                let pixels: Vec<[f32; 4]> = (rgba.chunks_exact(4))
+                    .map(|p| [p[0], p[1], p[2], p[3]].map(|byte| f32::from(byte) / 255.0))
+                    .collect();
+                films_alone.push(off(&squares(SIZE[0] as usize, &pixels), &reference));
+            })
+            .expect("a picture");
+        }
+    }
+    let seen = seen.lock().expect("seen");
+    let shown = seen
+        .iter()
+        .map(|picture| off(&squares_of(picture), &reference))
+        .collect();
+    Some(Watched { shown, films_alone })
+}
+
+/// Where a row of pictures gets worse: its place, and the least before.
+fn worse(shown: &[f64]) -> Option<(usize, f64, f64)> {
+    let mut least = f64::INFINITY;
+    for (at, &off) in shown.iter().enumerate() {
+        if off > TIMES * least + MORE {
+            return Some((at, off, least));
+        }
+        least = least.min(off);
+    }
+    None
+}
+
+#[test]
+fn no_picture_that_is_shown_is_worse_than_one_before() {
+    let (mut watched, mut control) = (0, 0);
+    let mut faults = Vec::new();
+    for visit in visits() {
+        let tables: Arc<SightTables> = Arc::default();
+        let mut screen = None;
+        for view in [&visit.open, &visit.zoom, &visit.edit] {
+            let Some(row) = watch(view, &STEPS, &tables, &mut screen) else {
+                continue;
+            };
+            watched += 1;
+            let text: Vec<String> = row.shown.iter().map(|off| format!("{off:.1}")).collect();
+            println!(
+                "{:24} {} | films {:.1?}",
+                view.name,
+                text.join(" "),
+                row.films_alone
+            );
+            if let Some((at, off, least)) = worse(&row.shown) {
+                faults.push(format!(
+                    "{}: picture {at} is {off:.2} off, after {least:.2}",
+                    view.name
+                ));
+            }
+            // Today's rule was: whatever is traced replaces first sight.
+            let replaced: Vec<f64> = row.shown[..1]
+                .iter()
+                .chain(&row.films_alone)
+                .copied()
+                .collect();
+            control += usize::from(worse(&replaced).is_some());
+        }
+    }
+    assert!(
+        watched >= 6,
+        "{watched} references: cargo bench --bench preview_references"
+    );
+    assert!(faults.is_empty(), "{faults:#?}");
+    assert!(
+        control > 0,
+        "the control: films alone are never worse, so nothing was shown"
+    );
+}
+
+/// With a clock, as a person sees it: prints how far off what is shown was at each second.
+/// Only where `PICKGLASS_SOAK` says for how many seconds a view is watched.
+#[test]
+fn the_first_minute_by_the_clock() {
+    let seconds = std::env::var("PICKGLASS_SOAK")
+        .ok()
+        .and_then(|text| text.parse::<u64>().ok());
+    let Some(seconds) = seconds else { return };
+    for visit in visits() {
+        let worker = super::ClothWorker::start(ExemplarStore::user(), || {}).expect("a thread");
+        for (generation, view) in [&visit.open, &visit.zoom, &visit.edit]
+            .into_iter()
+            .enumerate()
+        {
+            let Some(reference) = reference(&view.name) else {
+                continue;
+            };
+            let request = request_of(view, generation as u64);
+            worker.request(request);
+            let begun = Instant::now();
+            let (mut row, mut line) = (Vec::new(), String::new());
+            let mut next = 0.0;
+            while begun.elapsed().as_secs() < seconds {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                let picture = worker.take_picture();
+                let Some(picture) = picture.filter(|p| p.generation == generation as u64) else {
+                    continue;
+                };
+                row.push(off(&squares_of(&picture), &reference));
+                let now = begun.elapsed().as_secs_f64();
+                if now >= next {
+                    line += &format!(" {now:.1}s {:.1}", row[row.len() - 1]);
+                    next = 1.5 * now + 0.1;
+                }
+            }
+            let fault = worse(&row).map_or_else(String::new, |(at, off, least)| {
+                format!(" | WORSE: picture {at} is {off:.2} off, after {least:.2}")
+            });
+            println!("{:24}{line}{fault}", view.name);
+        }
+    }
+}
