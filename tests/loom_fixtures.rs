@@ -240,7 +240,7 @@ fn colour_numbers_that_a_palette_lacks_get_the_directions_own() {
     let wpo = changed(
         "draft.wpo",
         b"\x01\x02\x02\x00\x06\x02",
-        b"\x01\x02\x09\x00\x06\x02",
+        b"\x01\x09\x02\x00\x06\x02",
     );
     let told = about_colours(&wpo);
     assert!(

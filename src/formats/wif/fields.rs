@@ -22,7 +22,6 @@ pub const FIELDS: Table = Table {
         Field::new("[WARP] Color", Honoured, "2"),
         Field::new("[WEFT] Color", Honoured, "1"),
         Field::new("[WARP] Units", Honoured, "Inches"),
-        Field::new("[WARP] Units", Honoured, "Decipoints"),
         Field::new("[WEFT] Units", Honoured, "Inches"),
         Field::new("[WARP] Spacing", Honoured, "0.2"),
         Field::new("[WEFT] Spacing", Honoured, "0.2"),
