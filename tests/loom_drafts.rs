@@ -161,6 +161,16 @@ fn drafts_that_are_wrong_are_refused_with_the_line() {
     assert_eq!(bad.len(), 10);
     for path in bad {
         let shown = path.file_name().unwrap().to_string_lossy().into_owned();
+        // A colour that is not there costs a colour, not the draft.
+        if shown.contains("color too big") {
+            let read = load(&path, &LoadOptions::default()).unwrap();
+            assert!(
+                read.warnings
+                    .iter()
+                    .any(|line| line.contains("has a colour number"))
+            );
+            continue;
+        }
         let message = load(&path, &LoadOptions::default())
             .unwrap_err()
             .to_string();
@@ -170,12 +180,6 @@ fn drafts_that_are_wrong_are_refused_with_the_line() {
         let line = message.contains(", line ");
         assert_eq!(line, !shown.starts_with("missing liftplan"), "{message}");
     }
-    // The fault is what is refused: the same draft without it is read.
-    let path = folder.join("bad_dtx/warp_color too big.dtx");
-    let text = std::fs::read_to_string(path).unwrap();
-    let mended = text.replace("7 0 0 0", "5 0 0 0");
-    assert_ne!(text, mended);
-    assert!(load_bytes(mended.as_bytes(), "mended", &LoadOptions::default()).is_ok());
     assert_eq!(Place::Line(3).to_string(), "line 3");
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use pickglass::design::{Design, FirstEnd, FirstPick, Srgb, WeavePattern};
-use pickglass::formats::{Imported, LoadOptions, load};
+use pickglass::formats::{Imported, LoadOptions, load, load_bytes};
 
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/looms")
@@ -194,4 +194,82 @@ fn the_script_still_makes_these_files() {
     }
     assert_eq!(compared, std::fs::read_dir(folder.path()).unwrap().count());
     assert_eq!(compared, 11);
+}
+
+/// A file with bytes at a place exchanged, opened.
+fn changed(name: &str, from: &[u8], to: &[u8]) -> Imported {
+    let bytes = std::fs::read(fixtures().join(name)).unwrap();
+    let at = bytes.windows(from.len()).position(|part| part == from);
+    let at = at.unwrap_or_else(|| panic!("{name} has no such bytes"));
+    let changed = [&bytes[..at], to, &bytes[at + from.len()..]].concat();
+    load_bytes(&changed, name, &LoadOptions::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The warnings about colours, of which there is one.
+fn about_colours(imported: &Imported) -> &str {
+    let warnings = imported.warnings.iter();
+    let about: Vec<&String> = warnings.filter(|line| line.contains("colour")).collect();
+    assert_eq!(about.len(), 1, "{:?}", imported.warnings);
+    about[0]
+}
+
+#[test]
+fn colour_numbers_that_a_palette_lacks_get_the_directions_own() {
+    let (white, red, blue) = ((255, 255, 255), (200, 30, 40), (0, 0, 255));
+    let dtx = changed(
+        "draft.dtx",
+        b"0 1 0 1 0 1 0",
+        b"0 3 0 -1 99999999999999999999 1 0",
+    );
+    let [warp, weft] = colours(&dtx.design);
+    assert_eq!(warp, [white, white, white, white, white, red, white]);
+    assert_eq!(weft, [blue, blue, red, blue, blue]);
+    let told = about_colours(&dtx);
+    assert!(
+        told.contains("3 ends have") && told.contains("end 2: colour 3"),
+        "{told}"
+    );
+    assert!(told.contains("the 3 of @@Color Palet"), "{told}");
+    let weft = changed("draft.dtx", b"2 2 1 2 2", b"2 7 1 2 2");
+    assert_eq!(colours(&weft.design)[1], [blue, red, red, blue, blue]);
+    let none = changed("draft.dtx", b"255,255,255 \n200,30,40 \n0,0,255 \n", b"");
+    assert_eq!(colours(&none.design), [vec![white; 7], vec![blue; 5]]);
+    assert!(about_colours(&none).contains("7 ends and 5 picks"));
+    // Stripes stay apart, to be dyed again.
+    assert_ne!(none.design.warp_yarn(0, 0), none.design.warp_yarn(1, 0));
+    let wpo = changed(
+        "draft.wpo",
+        b"\x01\x02\x02\x00\x06\x02",
+        b"\x01\x09\x02\x00\x06\x02",
+    );
+    let told = about_colours(&wpo);
+    assert!(
+        told.contains("1 end has a colour number outside the 3 of the palette"),
+        "{told}"
+    );
+    let navy = (20, 30, 90);
+    let dbw = changed(
+        "draft.dbw",
+        b"data==0303030301010101",
+        b"data==0303044401010101",
+    );
+    let told = about_colours(&dbw);
+    assert!(
+        told.contains("2 picks have") && told.contains("pick 2: colour 4"),
+        "{told}"
+    );
+    let [warp, weft] = colours(&dbw.design);
+    assert_eq!(warp[0], navy);
+    // The palette's second colour is the weft's.
+    assert_eq!(weft[1..3], [(0, 128, 0); 2]);
+}
+
+#[test]
+fn channels_outside_their_range_are_cut_off_and_counted() {
+    let dtx = changed("draft.dtx", b"200,30,40", b"300,-5,40");
+    assert_eq!(colours(&dtx.design)[0][1], (255, 0, 40));
+    assert!(about_colours(&dtx).contains("a colour lies outside 0 to 255"));
+    let wpo = changed("old.wpo", b"\x3f\x00\x15", b"\xff\x40\x15");
+    assert!(about_colours(&wpo).contains("a colour lies outside 0 to 63"));
+    assert_eq!(colours(&wpo.design)[0][0], (255, 255, 85));
 }

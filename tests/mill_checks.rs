@@ -285,7 +285,7 @@ fn wild_designs_give_finite_reports() {
             };
             let pattern = Structure::Pattern(WeavePattern::new(ends, picks));
             let maps = YarnMaps::plain(YarnId(0), YarnId(0));
-            let sett = Sett::per_cm(10_000.0, 0.1);
+            let sett = Sett::per_cm(500.0, 0.5);
             let report = check(&Design::new("wild", pattern, vec![yarn], maps, sett).unwrap());
             assert!(report.grams_per_m2.is_finite() && report.warp.mean.is_finite());
             assert!(!report.weavable() && report.balance().is_none());

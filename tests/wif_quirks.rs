@@ -328,3 +328,45 @@ fn what_a_wif_cannot_hold_is_listed() {
     let sett = |design: &pickglass::design::Design| design.sett().end_pitch_mm();
     assert!((sett(&check) / sett(&back.design) - 1.0).abs() < 1e-5);
 }
+
+#[test]
+fn colours_outside_the_table_or_the_range_are_replaced_and_counted() {
+    // A table with a hole: 2 is not there.
+    let hole = changed("1=200,10,20\n2=", "1=200,10,20\n3=").unwrap();
+    warned(&hole, "no colour 2; ");
+    let beyond = changed("Threads=4", "Threads=4\nColor=-3").unwrap();
+    warned(&beyond, "4 ends have colour numbers");
+    warned(&beyond, "colour -3");
+    let huge = changed("Threads=4", "Threads=4\nColor=99999999999999999999").unwrap();
+    assert_eq!(colours(&huge, true), colours(&beyond, true));
+    assert_eq!(colours(&huge, true), ["#c80a14"; 4]);
+    // The channels behind a number that the table lacks are the colour.
+    let channels = changed("Threads=4", "Threads=4\nColor=9,1,2,3").unwrap();
+    assert_eq!(colours(&channels, true), ["#010203"; 4]);
+    let infinite = changed("1=200,10,20", "1=inf,-1e40,20").unwrap();
+    assert_eq!(colours(&infinite, true), ["#ff0014"; 4]);
+    warned(&infinite, "a colour lies outside Range=0,255: cut off");
+    assert!(refusal("1=200,10,20", "1=nan,10,20").contains("number=red,green,blue"));
+}
+
+#[test]
+fn colours_count_from_0_only_where_all_of_them_fit() {
+    let with = |weft: &str| {
+        let threads = "[WEFT]\nThreads=4";
+        changed(
+            threads,
+            &format!("{threads}\nColor=0\n[WEFT COLORS]\n{weft}"),
+        )
+        .unwrap()
+    };
+    let from_zero = with("1=1\n");
+    warned(&from_zero, "counted from 0");
+    let (first, second) = (
+        "#c80a14".to_owned(),
+        colours(&fixture("plain_twill.wif"), false)[0].clone(),
+    );
+    assert_eq!(colours(&from_zero, false)[..2], [second, first]);
+    // Colour 2 would be a third: the file counts from 1, and 0 is a colour it lacks.
+    let from_one = with("1=2\n");
+    warned(&from_one, "3 picks have colour numbers outside the 2");
+}

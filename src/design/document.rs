@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::limits::YARNS;
+
 use super::colourways::{self, Colourway, ColourwayError};
 use super::lattice::{Lattice, LatticeError};
 use super::maps::{YarnMap, YarnMaps};
@@ -17,7 +19,7 @@ pub enum DesignError {
     #[error("the design has no yarns: give at least one")]
     NoYarns,
     /// More yarns than can be numbered.
-    #[error("the design has {0} yarns; the most is 65536: join those that look alike")]
+    #[error("the design has {0} yarns; the most is {YARNS}: join those that look alike")]
     TooManyYarns(usize),
     /// A map that names a yarn that is not there.
     #[error("the {direction} names yarn {yarn}, but the design has {yarns}: add it")]
@@ -461,7 +463,7 @@ fn check_yarns(yarns: &[Yarn]) -> Result<(), DesignError> {
     if yarns.is_empty() {
         return Err(DesignError::NoYarns);
     }
-    if yarns.len() > 1 << 16 {
+    if yarns.len() > YARNS {
         return Err(DesignError::TooManyYarns(yarns.len()));
     }
     match yarns.iter().find_map(Yarn::fault) {

@@ -19,7 +19,7 @@ pub struct Ties {
 }
 
 /// The most shafts or treadles a draft can have.
-pub const MAX_SHAFTS: u32 = 65_535;
+pub const MAX_SHAFTS: u32 = crate::limits::SHAFTS;
 
 impl Ties {
     /// The sets in order, each sorted and freed of repetitions.

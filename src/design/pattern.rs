@@ -3,12 +3,14 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::limits;
+
 use super::tiles::{TILE, Tiles};
 
 /// The most crossings a pattern, map or drawdown may have (2²⁹, 64 MiB of bits): sixteen
 /// times the largest loom file seen (5120 × 6300), and a panel of 16 000 × 20 000 with room
 /// around it. A crossing's number, and four times that, fit into 32 bits.
-pub const MAX_CROSSINGS: u64 = 1 << 29;
+pub const MAX_CROSSINGS: u64 = limits::CROSSINGS;
 
 /// A tile of 64×64 crossings: one word a pick, bit = end.
 type Tile = [u64; TILE as usize];

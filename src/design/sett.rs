@@ -6,6 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits;
+
 /// How densely the threads of one direction lie.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Density {
@@ -54,10 +56,10 @@ impl Density {
 
     fn fault(&self, what: &str) -> Option<String> {
         let usable = |value: f32| (MIN_PITCH_MM..=MAX_PITCH_MM).contains(&value);
-        if !usable(self.pitch_mm()) {
-            let per_cm = self.per_cm;
+        if !limits::can_be_woven(self.pitch_mm()) {
+            let (per_cm, range) = (self.per_cm, limits::in_words(&limits::SETT_PER_CM));
             return Some(format!(
-                "{per_cm} {what} per cm cannot be woven: give 0.1 to 10000"
+                "{per_cm} {what} per cm cannot be woven: give {range}"
             ));
         }
         let list = self.pitches_mm.as_ref()?;
@@ -74,9 +76,9 @@ impl Density {
 }
 
 /// The smallest pitch taken, in mm.
-pub const MIN_PITCH_MM: f32 = 0.001;
+pub const MIN_PITCH_MM: f32 = *limits::THREAD_PITCH_MM.start();
 /// The largest pitch taken, in mm.
-pub const MAX_PITCH_MM: f32 = 100.0;
+pub const MAX_PITCH_MM: f32 = *limits::THREAD_PITCH_MM.end();
 
 /// Ends and picks per length.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -9,6 +9,7 @@ use super::bricks::{BRICK, BrickVolume};
 use super::heights::{measure, predict};
 use super::voxelise::{VoxelGrid, voxelise};
 use crate::job::{Cancelled, Job};
+use crate::limits;
 use crate::synthesis::{Catalogue, EdgeHeights};
 use crate::yarn::{RecipeError, WeaveGeometry, YarnRecipe, hash};
 
@@ -28,7 +29,7 @@ pub enum ExemplarError {
     #[error(transparent)]
     Recipe(#[from] RecipeError),
     /// The yarns' spacing is not usable.
-    #[error("a thread spacing of {0} mm cannot be woven; give between 0.02 and 20 mm")]
+    #[error("a thread spacing of {0} mm cannot be woven; give {range} mm", range = limits::in_words(&limits::PITCH_MM))]
     Pitch(f32),
     /// The owner cancelled the work.
     #[error(transparent)]
@@ -77,7 +78,7 @@ pub fn common_grid(
     level: u32,
 ) -> Result<VoxelGrid, ExemplarError> {
     for side in [pitch.x, pitch.y] {
-        if !(0.02..=20.0).contains(&side) {
+        if !limits::can_be_woven(side) {
             return Err(ExemplarError::Pitch(side));
         }
     }

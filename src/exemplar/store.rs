@@ -5,6 +5,7 @@
 //! out and built anew. The least recently used files give way when the folder grows too
 //! large.
 
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -35,16 +36,11 @@ pub struct ExemplarStore {
 }
 
 impl ExemplarStore {
-    /// The store in the user's own cache folder (`PICKGLASS_CACHE` names another one).
+    /// The store in the user's own cache folder (`PICKGLASS_CACHE` names another one; empty
+    /// it names none).
     pub fn user() -> Self {
-        let folder = std::env::var_os("PICKGLASS_CACHE")
-            .map(PathBuf::from)
-            .or_else(|| {
-                let folders = directories::ProjectDirs::from("", "", "pickglass")?;
-                Some(folders.cache_dir().join("exemplars"))
-            });
         Self {
-            folder,
+            folder: user_folder(std::env::var_os("PICKGLASS_CACHE")),
             limit: LIMIT,
         }
     }
@@ -189,6 +185,15 @@ fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usi
     format!("{}.exemplars", &hasher.finalize().to_hex()[..32])
 }
 
+/// The folder that is named, or the user's own; an empty name names none.
+fn user_folder(named: Option<OsString>) -> Option<PathBuf> {
+    let named = named.filter(|named| !named.is_empty()).map(PathBuf::from);
+    named.or_else(|| {
+        let folders = directories::ProjectDirs::from("", "", "pickglass")?;
+        Some(folders.cache_dir().join("exemplars"))
+    })
+}
+
 /// Writes through a hasher.
 struct Hashed<W> {
     inner: W,
@@ -322,6 +327,14 @@ mod tests {
         assert!(read(&path).is_none());
         get(&store, &pair);
         assert_eq!(fs::read(&path).unwrap(), whole);
+    }
+
+    #[test]
+    fn case_20_an_empty_variable_names_no_folder() {
+        assert_eq!(user_folder(Some(OsString::new())), user_folder(None));
+        assert_ne!(user_folder(None), Some(PathBuf::new()));
+        let named = user_folder(Some(OsString::from("/there")));
+        assert_eq!(named, Some(PathBuf::from("/there")));
     }
 
     #[test]

@@ -15,14 +15,20 @@
 //!
 //! A tie is a byte from 1 to 127; its number is the pattern range it belongs to, and 12
 //! is a tie taken away. The grid is of a fixed size: the draft is what is threaded and
-//! treadled on it. Sizes in mm are not in the file; reed and guide lines are not read.
+//! treadled on it. Sizes in mm are not in the file; the reed is told and not
+//! followed, guide lines are not read.
 
 use std::collections::BTreeMap;
 
-use super::sheet::{Misfit, Place, Sheet, SheetError, Warnings, colours, warn_unused_threads};
+use super::encoding::decode;
+use super::field_table::Handling::{Honoured, Warned};
+use super::field_table::{self, Table};
+use super::sheet::{
+    Misfit, Place, Sheet, SheetError, StandIns, Warnings, colours, warn_unused_threads,
+};
 use super::wif::MAX_THREADS;
-use super::wif::text::{decode, lines, shorten};
-use super::wif::threads::Threads;
+use super::wif::text::{lines, shorten};
+use super::wif::threads::{Direction, Threads};
 use super::{Imported, LoadOptions};
 use crate::design::{
     Draft, FirstEnd, FirstPick, Lifting, MAX_SHAFTS, Shed, Srgb, Structure, Ties, check_size,
@@ -30,6 +36,39 @@ use crate::design::{
 
 /// How every file begins.
 const MAGIC: &[u8] = b"@dbw3:file";
+
+/// What a file says of sizes, colours and threads, by the paths of its sections.
+pub const FIELDS: Table = Table {
+    format: "dbw",
+    fields: &[
+        field_table::Field::new("data/fields/einzug/data", Honoured, "0100030001000200"),
+        field_table::Field::new(
+            "data/fields/aufknuepfung/data",
+            Honoured,
+            "010100000001000001",
+        ),
+        field_table::Field::new("data/fields/aufknuepfung/sizex", Honoured, "2"),
+        field_table::Field::new("data/fields/aufknuepfung/sizey", Honoured, "2"),
+        field_table::Field::new(
+            "data/fields/trittfolge/trittfolge/data",
+            Honoured,
+            "010000010000000100",
+        ),
+        field_table::Field::new("data/fields/trittfolge/trittfolge/sizex", Honoured, "2"),
+        field_table::Field::new("data/fields/trittfolge/trittfolge/sizey", Honoured, "2"),
+        field_table::Field::new("data/fields/kettfarben/data", Honoured, "01010001"),
+        field_table::Field::new("data/fields/schussfarben/data", Honoured, "000001"),
+        field_table::Field::new("data/palette/data", Honoured, "000300020a0b0c000d0e0f00"),
+        field_table::Field::new("data/palette/data2", Honoured, "0a0b0c000d0e0f00"),
+        field_table::Field::new("data/fields/blatteinzug/data", Warned, "00000100"),
+        field_table::Field::new("view/general/hebung", Honoured, "0"),
+        field_table::Field::new("view/general/viewpegplan", Honoured, "1"),
+        field_table::Field::new("view/general/righttoleft", Honoured, "1"),
+        field_table::Field::new("view/general/toptobottom", Honoured, "1"),
+        field_table::Field::new("view/general/faktor_kette", Warned, "2.0"),
+        field_table::Field::new("view/general/faktor_schuss", Warned, "2.0"),
+    ],
+};
 
 /// The tie that takes a tie away.
 const UNTIED: u8 = 12;
@@ -53,9 +92,9 @@ pub fn recognises(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`SheetError`]: one line with the file, the line, what was expected and what to do.
 pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported, SheetError> {
-    let text = decode(bytes);
-    let file = File::split(&text, name)?;
     let mut warnings = Warnings::default();
+    let text = decode(bytes, &mut warnings);
+    let file = File::split(&text, name)?;
     for personal in ["properties/author", "properties/organization"] {
         if let Some(field) = file
             .fields
@@ -72,22 +111,27 @@ pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported,
     let draft = grid.draft(&file, right, top, &mut warnings)?;
     warn_unused_threads(&draft, &mut warnings);
     let palette = file.palette()?;
-    let side = |key, from: usize, threads: u32, reversed, usual| {
-        file.colours(
-            key,
-            &palette,
-            from..from + threads as usize,
-            reversed,
-            usual,
-        )
+    let mut stand_ins = StandIns::default();
+    let mut side = |direction, from: usize, threads: u32, reversed| {
+        let range = from..from + threads as usize;
+        file.colours((direction, &mut stand_ins), &palette, range, reversed)
     };
-    let warp_colours = side("kettfarben", grid.ends.0, draft.ends(), right, 1)?;
-    let weft_colours = side("schussfarben", grid.picks.0, draft.picks(), top, 2)?;
+    let warp_colours = side(Direction::Warp, grid.ends.0, draft.ends(), right)?;
+    let weft_colours = side(Direction::Weft, grid.picks.0, draft.picks(), top)?;
+    stand_ins.tell("the palette", palette.len(), &mut warnings);
     for factor in ["view/general/faktor_kette", "view/general/faktor_schuss"] {
         let stated = file.fields.get(factor);
         if let Some(field) = stated.filter(|field| field.value.trim().parse() != Ok(1.0f32)) {
             let what = "states only how wide threads are drawn, no sett";
-            warnings.at(field.line, format!("{factor} {what}; give one with --sett"));
+            warnings.at(field.line, format!("{factor} {what}; give one"));
+        }
+    }
+    if let Some(field) = file.fields.get(REED) {
+        // Dents alternate; a reed of one end a dent says nothing.
+        let dents = field.bytes(name)?;
+        if dents.iter().any(|&dent| dent != 0) {
+            let what = "says how the ends lie in the reed; it is not read";
+            warnings.at(field.line, format!("{REED} {what}"));
         }
     }
     let notes = file.fields.get("properties/remarks");
@@ -158,11 +202,15 @@ struct File<'t> {
     fields: BTreeMap<&'static str, Field<'t>>,
 }
 
+/// How the ends lie in the reed.
+const REED: &str = "data/fields/blatteinzug/data";
+
 /// The paths of these fields; all others are passed over.
-const KNOWN: [&str; 24] = [
+const KNOWN: [&str; 25] = [
     "data/fields/aufknuepfung/data",
     "data/fields/aufknuepfung/sizex",
     "data/fields/aufknuepfung/sizey",
+    "data/fields/blatteinzug/data",
     "data/fields/einzug/data",
     "data/fields/kettfarben/data",
     "data/fields/schussfarben/data",
@@ -327,32 +375,27 @@ impl<'t> File<'t> {
             .collect())
     }
 
-    /// Number and colour of the threads in `range` of a list of colours.
+    /// Number and colour of the threads in `range` of a direction's list of colours.
     fn colours(
         &self,
-        key: &'static str,
+        side: (Direction, &mut StandIns),
         palette: &[Srgb],
         range: std::ops::Range<usize>,
         reversed: bool,
-        usual: u32,
     ) -> Result<Vec<(u32, Srgb)>, SheetError> {
-        let threads = range.len();
-        let path = match key {
-            "kettfarben" => "data/fields/kettfarben/data",
-            _ => "data/fields/schussfarben/data",
+        let path = match side.0 {
+            Direction::Warp => "data/fields/kettfarben/data",
+            Direction::Weft => "data/fields/schussfarben/data",
         };
-        let Some(field) = self.fields.get(path) else {
-            return Ok(colours::<u8>(palette, &[], threads, usual).unwrap_or_default());
+        let bytes = match self.fields.get(path) {
+            Some(field) => field.bytes(self.name)?,
+            None => Vec::new(),
         };
-        let bytes = field.bytes(self.name)?;
+        let line = self.fields.get(path).map(|field| field.line);
         let listed = bytes.get(range.start.min(bytes.len())..).unwrap_or(&[]);
-        let mut chosen = colours(palette, listed, threads, usual).map_err(|thread| {
-            let (number, most) = (listed[thread], palette.len());
-            let place = range.start + thread + 1;
-            let problem =
-                format!("expected one of {most} colours for {key} {place}, found {number}");
-            self.at(field.line, problem, "correct the number or the palette")
-        })?;
+        let numbers = listed.iter().map(|&number| (line, number));
+        let usual = side.0 as i64 + 1;
+        let mut chosen = colours(palette, numbers, range.len(), usual, side);
         if reversed {
             chosen.reverse();
         }

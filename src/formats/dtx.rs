@@ -9,13 +9,18 @@
 //! that are neither declared nor tied up are refused, tie-up and treadling count where a
 //! lift plan differs.
 
+use std::num::IntErrorKind;
+
+use super::encoding::decode;
+use super::field_table::Handling::{Honoured, Warned};
+use super::field_table::{Field, Table};
 use super::sheet::{
-    Active, Misfit, Place, Sheet, SheetError, Warnings, at_least, colours, tieup_or_plan,
+    Misfit, Place, Sheet, SheetError, StandIns, Warnings, at_least, colours, tieup_or_plan,
     warn_unused_threads, without_path,
 };
 use super::wif::MAX_THREADS;
-use super::wif::text::{decode, lines, shorten};
-use super::wif::threads::Threads;
+use super::wif::text::{lines, shorten};
+use super::wif::threads::{Direction, Threads};
 use super::{Imported, LoadOptions};
 use crate::design::{
     Draft, FirstEnd, FirstPick, Lifting, MAX_SHAFTS, Shed, Srgb, Structure, Ties, check_size,
@@ -34,6 +39,50 @@ const MAX_STEPS: u32 = 1000;
 /// More sections than any program writes; a guard against files made of headers.
 const MAX_SECTIONS: usize = 256;
 
+/// What a file says of sizes, colours and threads: keys, and sections with their lines.
+pub const FIELDS: Table = Table {
+    format: "dtx",
+    fields: &[
+        Field::new("%%shafts", Honoured, "6"),
+        Field::new("%%treadles", Honoured, "6"),
+        Field::new("%%ends", Honoured, "6"),
+        Field::new("%%picks", Honoured, "6"),
+        Field::new("%%sinking", Honoured, "1"),
+        Field::new("@@Threading", Honoured, "4 3 1 1"),
+        Field::new("@@Tieup", Honoured, "1000\n0100\n0010\n0011"),
+        Field::new("@@Treadling", Honoured, "4 3 1,2 1"),
+        Field::new("@@Liftplan", Honoured, "1111\n0100\n0010\n0011"),
+        Field::new("@@Color Palet", Honoured, "9,9,9\n1,2,3"),
+        Field::new("@@Color Palette", Honoured, "9,9,9\n1,2,3"),
+        Field::new("@@Warp Colors", Honoured, "1 0 1 1"),
+        Field::new("@@Weft Colors", Honoured, "0 0 1 1"),
+        Field::new("@@Warp Spacing", Honoured, "4 2 4 4"),
+        Field::new("@@Weft Spacing", Honoured, "4 2 4 4"),
+        // Not of the format as it is known: what a later version may add.
+        Field::new("@@Warp Thickness", Warned, "4 2 4 4"),
+    ],
+};
+
+/// The sections that are read, or say nothing of the cloth.
+const KNOWN: [&str; 16] = [
+    "startdtx",
+    "enddtx",
+    "description",
+    "imprint",
+    "info",
+    "notes",
+    "threading",
+    "tieup",
+    "treadling",
+    "liftplan",
+    "color palet",
+    "color palette",
+    "warp colors",
+    "weft colors",
+    "warp spacing",
+    "weft spacing",
+];
+
 /// Whether bytes are a Fiberworks draft.
 pub fn recognises(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -46,19 +95,21 @@ pub fn recognises(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`SheetError`]: one line with the file, the line, what was expected and what to do.
 pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported, SheetError> {
-    let text = decode(bytes);
     let mut warnings = Warnings::default();
+    let text = decode(bytes, &mut warnings);
     let file = File::split(&text, name, &mut warnings)?;
     let draft = read_draft(&file, &mut warnings)?;
     warn_unused_threads(&draft, &mut warnings);
-    let palette = read_palette(&file)?;
-    let active = Active::of(&draft);
-    let mut side = |side: Side, threads: &[bool]| -> Result<_, SheetError> {
-        let chosen = side.colours(&file, &palette, threads.len(), &mut warnings)?;
-        Ok((chosen, side.spacings(&file, threads.len(), &mut warnings)?))
+    let palette = read_palette(&file, &mut warnings)?;
+    let mut stand_ins = StandIns::default();
+    let mut side = |side: Side, threads: u32| -> Result<_, SheetError> {
+        let threads = threads as usize;
+        let chosen = side.colours(&file, &palette, threads, &mut stand_ins, &mut warnings)?;
+        Ok((chosen, side.spacings(&file, threads, &mut warnings)?))
     };
-    let (warp_colours, warp) = side(WARP, &active.ends)?;
-    let (weft_colours, weft) = side(WEFT, &active.picks)?;
+    let (warp_colours, warp) = side(WARP, draft.ends())?;
+    let (weft_colours, weft) = side(WEFT, draft.picks())?;
+    stand_ins.tell("@@Color Palet", palette.len(), &mut warnings);
     let first_line = |section| {
         let first = file.section(section)?.rows().next()?;
         Some(first.1.to_owned())
@@ -171,6 +222,10 @@ impl<'t> File<'t> {
                     number,
                     format!("@@{} again; the first counts", shorten(header)),
                 );
+            }
+            if !KNOWN.iter().any(|name| header.eq_ignore_ascii_case(name)) {
+                let what = format!("@@{} is not known and not read", shorten(header));
+                warnings.at(number, what);
             }
             ended = header.eq_ignore_ascii_case("EndDTX");
             body_from = (start_of(line) + line.len()).min(text.len());
@@ -471,14 +526,15 @@ fn read_plan(
     Ok((plan, shed(section)))
 }
 
-fn read_palette(file: &File<'_>) -> Result<Vec<Srgb>, SheetError> {
+fn read_palette(file: &File<'_>, warnings: &mut Warnings) -> Result<Vec<Srgb>, SheetError> {
     let Some(section) = file.section("color palette") else {
         return Ok(Vec::new());
     };
     let mut palette = Vec::new();
+    let mut outside: Option<(u32, u32)> = None;
     for (line, row) in section.rows() {
-        let mut channels = row.split(',').map(|channel| channel.trim().parse::<u8>());
-        let (Some(Ok(red)), Some(Ok(green)), Some(Ok(blue)), None) = (
+        let mut channels = row.split(',').map(|channel| whole(channel.trim()));
+        let (Some(Some(red)), Some(Some(green)), Some(Some(blue)), None) = (
             channels.next(),
             channels.next(),
             channels.next(),
@@ -492,7 +548,19 @@ fn read_palette(file: &File<'_>) -> Result<Vec<Srgb>, SheetError> {
             let problem = format!("expected at most {MAX_COLOURS} colours");
             return Err(file.at(line, problem, "join those that look alike"));
         }
+        let written = [red, green, blue];
+        let [red, green, blue] = written.map(|channel| channel.clamp(0, 255) as u8);
+        if [red, green, blue].map(i64::from) != written {
+            outside.get_or_insert((line, 0)).1 += 1;
+        }
         palette.push(Srgb(red, green, blue));
+    }
+    if let Some((line, count)) = outside {
+        let what = match count {
+            1 => "a colour lies".to_owned(),
+            _ => format!("{count} colours lie"),
+        };
+        warnings.at(line, format!("{what} outside 0 to 255: cut off"));
     }
     Ok(palette)
 }
@@ -502,33 +570,40 @@ const MAX_COLOURS: usize = 1 << 14;
 
 /// One direction and its sections.
 struct Side {
+    direction: Direction,
     colours: &'static str,
     spacing: &'static str,
-    /// Colour of threads that none is listed for, from 1.
-    usual: u32,
 }
 
 const WARP: Side = Side {
+    direction: Direction::Warp,
     colours: "warp colors",
     spacing: "warp spacing",
-    usual: 1,
 };
 const WEFT: Side = Side {
+    direction: Direction::Weft,
     colours: "weft colors",
     spacing: "weft spacing",
-    usual: 2,
 };
 
+/// A whole number, or the nearest that can be told; `None` for what is no number.
+fn whole(word: &str) -> Option<i64> {
+    match word.parse::<i64>() {
+        Ok(number) => Some(number),
+        Err(error) if *error.kind() == IntErrorKind::PosOverflow => Some(i64::MAX),
+        Err(error) if *error.kind() == IntErrorKind::NegOverflow => Some(i64::MIN),
+        Err(_) => None,
+    }
+}
+
 impl Side {
-    /// The whole numbers of a list, each up to `most`; `None` = there may be none at all.
+    /// The whole numbers of a list, with their lines.
     fn list(
-        &self,
         file: &File<'_>,
         name: &str,
-        most: Option<u32>,
         threads: usize,
         warnings: &mut Warnings,
-    ) -> Result<Vec<u32>, SheetError> {
+    ) -> Result<Vec<(u32, i64)>, SheetError> {
         let mut found = Vec::new();
         let Some(section) = file.section(name) else {
             return Ok(found);
@@ -539,19 +614,12 @@ impl Side {
                 warnings.at(line, format!("{what} ({threads}); the rest is ignored"));
                 break;
             }
-            let section = section.name;
-            let problem = match (word.parse::<u32>(), most) {
-                (Ok(number), Some(most)) if number <= most => {
-                    found.push(number);
-                    continue;
-                }
-                (_, None) => format!("expected a @@Color Palette for the numbers in @@{section}"),
-                (_, Some(most)) => {
-                    let word = shorten(word);
-                    format!("expected a number from 0 to {most} in @@{section}, found {word}")
-                }
+            let Some(number) = whole(word) else {
+                let (section, word) = (section.name, shorten(word));
+                let problem = format!("expected a whole number in @@{section}, found {word}");
+                return Err(file.at(line, problem, "correct the number"));
             };
-            return Err(file.at(line, problem, "correct the number or the palette"));
+            found.push((line, number));
         }
         Ok(found)
     }
@@ -561,15 +629,17 @@ impl Side {
         file: &File<'_>,
         palette: &[Srgb],
         threads: usize,
+        stand_ins: &mut StandIns,
         warnings: &mut Warnings,
     ) -> Result<Vec<(u32, Srgb)>, SheetError> {
-        let most = (palette.len() as u32).checked_sub(1);
-        let listed = self.list(file, self.colours, most, threads, warnings)?;
-        let usual = listed.first().map_or(self.usual, |&first| first + 1);
-        colours(palette, &listed, threads, usual).map_err(|thread| {
-            let problem = format!("thread {} has a colour that is not there", thread + 1);
-            SheetError::whole(file.name, problem, "correct the number or the palette")
-        })
+        let listed = Self::list(file, self.colours, threads, warnings)?;
+        let own = self.direction as i64 + 1;
+        let usual = listed
+            .first()
+            .map_or(own, |first| first.1.saturating_add(1));
+        let numbers = listed.iter().map(|&(line, number)| (Some(line), number));
+        let side = (self.direction, stand_ins);
+        Ok(colours(palette, numbers, threads, usual, side))
     }
 
     fn spacings(
@@ -578,21 +648,39 @@ impl Side {
         threads: usize,
         warnings: &mut Warnings,
     ) -> Result<Threads, SheetError> {
-        let steps = self.list(file, self.spacing, Some(MAX_STEPS), threads, warnings)?;
+        let steps = Self::list(file, self.spacing, threads, warnings)?;
         if steps.is_empty() {
             return Ok(Threads::listed(threads, None, Vec::new()));
         }
         let mut spacings = Vec::new();
-        for (thread, &step) in (0..).zip(&steps) {
-            if step == 0 {
-                let what = format!(
-                    "thread {} has no spacing; the usual one is taken",
-                    thread + 1
-                );
-                warnings.whole(format!("@@{}: {what}", self.spacing));
-            } else if step != USUAL_STEPS {
-                spacings.push((thread, step as f32 * STEP_CM));
+        let mut none: Option<(u32, u32, u32)> = None;
+        for (thread, &(line, step)) in (0..).zip(&steps) {
+            match u32::try_from(step) {
+                Ok(0) => none.get_or_insert((line, thread + 1, 0)).2 += 1,
+                Ok(step @ 1..=MAX_STEPS) if step != USUAL_STEPS => {
+                    spacings.push((thread, step as f32 * STEP_CM));
+                }
+                Ok(USUAL_STEPS) => {}
+                _ => {
+                    let problem = format!(
+                        "expected a number from 0 to {MAX_STEPS} in @@{}, found {step}",
+                        self.spacing
+                    );
+                    return Err(file.at(line, problem, "correct the number"));
+                }
             }
+        }
+        if let Some((line, thread, count)) = none {
+            let have = if count == 1 {
+                "thread has"
+            } else {
+                "threads have"
+            };
+            let what = format!("{count} {have} no spacing in @@{}", self.spacing);
+            warnings.at(
+                line,
+                format!("{what} (first {thread}); the usual one is taken"),
+            );
         }
         let usual = USUAL_STEPS as f32 * STEP_CM;
         Ok(Threads::listed(

@@ -49,5 +49,11 @@ pub struct Table {
 
 /// The tables of all readers.
 pub fn tables() -> Vec<Table> {
-    Vec::new()
+    vec![
+        super::wif::FIELDS,
+        super::dtx::FIELDS,
+        super::wpo::FIELDS,
+        super::dbw::FIELDS,
+        super::jc5::FIELDS,
+    ]
 }

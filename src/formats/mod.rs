@@ -11,6 +11,7 @@
 pub mod atomic;
 pub mod dbw;
 pub mod dtx;
+mod encoding;
 pub mod exr;
 pub mod field_table;
 pub mod image;
@@ -120,7 +121,7 @@ pub enum FormatError {
 }
 
 /// The largest file that is opened: many times the largest design.
-pub const MAX_FILE: u64 = 1 << 28;
+pub const MAX_FILE: u64 = crate::limits::FILE;
 
 /// The bytes of a file, if they are no more than [`MAX_FILE`].
 ///
@@ -173,13 +174,14 @@ impl Kind {
         if Encoding::of(bytes).is_some() {
             return Self::Image;
         }
+        let bytes = encoding::beginning(bytes);
         if let Some((_, read)) = LOOM_FORMATS
             .iter()
-            .find(|(recognises, _)| recognises(bytes))
+            .find(|(recognises, _)| recognises(&bytes))
         {
             return Self::Loom(*read);
         }
-        if let Some(found) = other_kind(bytes) {
+        if let Some(found) = other_kind(&bytes) {
             return Self::Other(found);
         }
         let start = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
@@ -207,10 +209,14 @@ pub fn load_bytes(
         Kind::Image => Ok(image::design(image::read(bytes, name)?, name, options)?),
         Kind::Loom(read) => Ok(read(bytes, name, options)?),
         Kind::Wif => Ok(wif::read_with(bytes, name, options)?),
-        Kind::Ron => Ok(Imported {
-            design: with_options(ron::read(bytes, name)?, name, options)?,
-            warnings: Vec::new(),
-        }),
+        Kind::Ron => {
+            let mut warnings = sheet::Warnings::default();
+            let text = encoding::as_utf_8(bytes, &mut warnings);
+            Ok(Imported {
+                design: with_options(ron::read(&text, name)?, name, options)?,
+                warnings: warnings.finish(),
+            })
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use std::fmt;
 
-use super::wif::threads::{self, Spacing, Threads};
+use super::wif::threads::{self, Direction, Spacing, Threads};
 use super::{Imported, LoadOptions, stem};
 use crate::design::{
     Design, Draft, Family, FirstEnd, FirstPick, ForeignSection, Lifting, Origin, Srgb, Structure,
@@ -114,7 +114,7 @@ impl Warnings {
         }
     }
 
-    fn finish(mut self) -> Vec<String> {
+    pub fn finish(mut self) -> Vec<String> {
         if self.more > 0 {
             self.list
                 .push(format!("and {} more of this kind", self.more));
@@ -126,31 +126,107 @@ impl Warnings {
 /// Colours of the warp and the weft in a file that gives none (Fiberworks' own).
 pub(super) const NO_PALETTE: [Srgb; 2] = [Srgb(255, 255, 255), Srgb(0, 0, 255)];
 
-/// The number (from 1) and colour of each of `threads` threads: as `listed` (from 0), the
-/// rest as `usual` (from 1) if the palette has it, else its first.
-///
-/// # Errors
-/// The first thread whose listed colour the palette lacks.
-pub(super) fn colours<Number: Copy + Into<u32>>(
+/// Colour numbers of threads that the file has no colour for: a draft weaves all the same,
+/// so each gets a colour that stands in, and one line tells of all.
+#[derive(Debug, Default)]
+pub(super) struct StandIns {
+    /// Of the warp and the weft: how many threads, and the colour that stands in.
+    sides: [Option<(usize, Srgb)>; 2],
+    /// Line, direction, thread from 1 and number as written, of the first.
+    first: Option<(Option<u32>, Direction, usize, i64)>,
+}
+
+impl StandIns {
+    /// Counts a thread (from 0) with a number that has no colour.
+    pub fn count(
+        &mut self,
+        direction: Direction,
+        thread: usize,
+        (line, number): (Option<u32>, i64),
+        colour: Srgb,
+    ) {
+        self.sides[direction as usize].get_or_insert((0, colour)).0 += 1;
+        self.first
+            .get_or_insert((line, direction, thread + 1, number));
+    }
+
+    /// Tells what was counted. `place` is where the file has its `known` colours.
+    pub fn tell(self, place: &str, known: usize, warnings: &mut Warnings) {
+        let Some((line, direction, thread, number)) = self.first else {
+            return;
+        };
+        let (mut threads, mut colours) = (Vec::new(), Vec::new());
+        for (side, [one, many, name]) in self
+            .sides
+            .iter()
+            .zip([["end", "ends", "warp"], ["pick", "picks", "weft"]])
+        {
+            if let Some((count, colour)) = side {
+                threads.push(format!("{count} {}", if *count == 1 { one } else { many }));
+                colours.push(format!("{colour} for the {name}"));
+            }
+        }
+        let having = match self.sides {
+            [Some((1, _)), None] | [None, Some((1, _))] => "has a colour number",
+            _ => "have colour numbers",
+        };
+        let lacking = match known {
+            0 => format!("but there is no {place}"),
+            _ => format!("outside the {known} of {place}"),
+        };
+        let what = format!(
+            "{} {having} {lacking} (first {} {thread}: colour {number}); taken instead: {}",
+            threads.join(" and "),
+            ["end", "pick"][direction as usize],
+            colours.join(", ")
+        );
+        match line {
+            Some(line) => warnings.at(line, what),
+            None => warnings.whole(what),
+        }
+    }
+}
+
+/// The number by which a yarn of a colour that has a stand-in is called: the file's own,
+/// so that stripes stay apart, if a yarn can have it.
+pub(super) fn kept_number(written: i64, stand_in: u32) -> u32 {
+    u16::try_from(written).map_or(stand_in, u32::from)
+}
+
+/// The number (from 1) and colour of each of `threads` threads: as `listed` (from 0, with
+/// the line where there is one), the rest as `usual` (from 1) if the palette has it, else
+/// as the palette's first. A number that the palette lacks is counted and gets the
+/// direction's own colour.
+pub(super) fn colours<Number: Copy + Into<i64>>(
     palette: &[Srgb],
-    listed: &[Number],
+    listed: impl Iterator<Item = (Option<u32>, Number)>,
     threads: usize,
-    usual: u32,
-) -> Result<Vec<(u32, Srgb)>, usize> {
-    let of = |number: u32| {
-        palette
-            .get(number as usize)
-            .map(|&known| (number + 1, known))
+    usual: i64,
+    (direction, stand_ins): (Direction, &mut StandIns),
+) -> Vec<(u32, Srgb)> {
+    let of = |number: i64| {
+        let place = usize::try_from(number).ok()?;
+        Some((place as u32 + 1, *palette.get(place)?))
     };
-    let rest = of(usual - 1)
+    let own = direction as u32;
+    let stand_in = of(own.into())
         .or_else(|| of(0))
-        .unwrap_or((usual, NO_PALETTE[usize::from(usual > 1)]));
+        .unwrap_or((own + 1, NO_PALETTE[own as usize]));
+    let rest = of(usual - 1).unwrap_or(match palette.first() {
+        Some(&first) => (1, first),
+        None => stand_in,
+    });
     let mut chosen = Vec::with_capacity(threads);
-    for (thread, &number) in listed.iter().take(threads).enumerate() {
-        chosen.push(of(number.into()).ok_or(thread)?);
+    for (thread, (line, number)) in listed.take(threads).enumerate() {
+        let number = number.into();
+        chosen.push(of(number).unwrap_or_else(|| {
+            stand_ins.count(direction, thread, (line, number), stand_in.1);
+            let kept = kept_number(number.saturating_add(1), stand_in.0);
+            (kept, stand_in.1)
+        }));
     }
     chosen.resize(threads, rest);
-    Ok(chosen)
+    chosen
 }
 
 /// What does not fit together in a sheet, and what to do.

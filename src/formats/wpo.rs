@@ -18,15 +18,39 @@
 //! Spacing and thickness of single threads and notes lie behind the palette in a form
 //! that is not known, and are not read.
 
+use super::field_table::Handling::{Honoured, Warned};
+use super::field_table::{Field, Table};
 use super::sheet::{
-    Misfit, Place, Sheet, SheetError, Warnings, at_least, colours, warn_unused_threads,
+    Misfit, Place, Sheet, SheetError, StandIns, Warnings, at_least, colours, warn_unused_threads,
 };
-use super::wif::threads::Threads;
+use super::wif::threads::{Direction, Threads};
 use super::{Imported, LoadOptions};
 use crate::design::{Draft, FirstEnd, FirstPick, Lifting, Shed, Srgb, Structure, Ties, check_size};
 
 /// The latest version whose layout is known.
 const KNOWN_VERSION: u8 = 7;
+
+/// What a file says of sizes, colours and threads; it has no names for it.
+pub const FIELDS: Table = Table {
+    format: "wpo",
+    fields: &[
+        Field::new("version", Honoured, "3"),
+        Field::new("kind of lifting", Honoured, "100"),
+        Field::new("shafts", Honoured, "5"),
+        Field::new("treadles", Honoured, "5"),
+        Field::new("rising shed", Honoured, "1"),
+        Field::new("ends per inch", Honoured, "24"),
+        Field::new("picks per inch", Honoured, "20"),
+        Field::new("sheet", Warned, "9"),
+        Field::new("threading", Honoured, "4"),
+        Field::new("warp colours", Honoured, "1"),
+        Field::new("weft colours", Honoured, "1"),
+        Field::new("tie-up", Honoured, "8"),
+        Field::new("treadling", Honoured, "4"),
+        Field::new("palette", Honoured, "7"),
+        Field::new("spacing and thickness of single threads", Warned, "1"),
+    ],
+};
 
 /// Whether bytes are a WeavePoint draft; JSON also begins with `{`, but never so.
 pub fn recognises(bytes: &[u8]) -> bool {
@@ -95,20 +119,25 @@ pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported,
         .map_err(|error| file.error(24, error.to_string(), "correct the draft"))?;
     warn_unused_threads(&draft, &mut warnings);
     file.take(66, "66 bytes for translations")?;
-    let palette = file.palette(version)?;
-    let chosen = |numbers: &[u8], threads: u32, usual, what| {
-        let usual = numbers.last().map_or(usual, |&last| u32::from(last) + 1);
-        colours(&palette, numbers, threads as usize, usual).map_err(|thread| {
-            let (number, most) = (numbers[thread], palette.len());
-            let problem = format!(
-                "expected one of {most} colours for {what} {}, found colour {number}",
-                thread + 1
-            );
-            SheetError::whole(name, problem, "add that colour or correct the number")
-        })
+    let palette = file.palette(version, &mut warnings)?;
+    let behind = bytes.len() - file.at;
+    if behind > 0 {
+        warnings.whole(format!(
+            "{behind} bytes behind the palette are not read: spacing and thickness of single \
+             threads, and notes, stand there"
+        ));
+    }
+    let mut stand_ins = StandIns::default();
+    let mut chosen = |numbers: &[u8], threads: u32, direction: Direction| {
+        let own = direction as i64 + 1;
+        let usual = numbers.last().map_or(own, |&last| i64::from(last) + 1);
+        let listed = numbers.iter().map(|&number| (None, number));
+        let side = (direction, &mut stand_ins);
+        colours(&palette, listed, threads as usize, usual, side)
     };
-    let warp_colours = chosen(warp_numbers, draft.ends(), 1, "end")?;
-    let weft_colours = chosen(weft_numbers, draft.picks(), 2, "pick")?;
+    let warp_colours = chosen(warp_numbers, draft.ends(), Direction::Warp);
+    let weft_colours = chosen(weft_numbers, draft.picks(), Direction::Weft);
+    stand_ins.tell("the palette", palette.len(), &mut warnings);
     let spaced = |count: u32, per_inch: u8| {
         let spacing = (per_inch > 0).then(|| ("Inches", 1.0 / f32::from(per_inch)));
         Threads::listed(count as usize, spacing, Vec::new())
@@ -255,12 +284,21 @@ impl<'b> File<'b> {
         Ok((Lifting::Treadled { tieup, treadling }, used))
     }
 
-    fn palette(&mut self, version: u8) -> Result<Vec<Srgb>, SheetError> {
+    fn palette(&mut self, version: u8, warnings: &mut Warnings) -> Result<Vec<Srgb>, SheetError> {
         let count = self.take(1, "the count of colours")?[0];
         let channels = self.take(3 * usize::from(count), "the palette")?;
-        let scaled = |value: u8| match version {
-            0..4 => (f32::from(value.min(63)) * 255.0 / 63.0).round() as u8,
-            _ => value,
+        let most = if version < 4 { 63u8 } else { 255 };
+        let outside = channels
+            .chunks_exact(3)
+            .filter(|rgb| rgb.iter().any(|&value| value > most));
+        match outside.count() {
+            0 => {}
+            1 => warnings.whole(format!("a colour lies outside 0 to {most}: cut off")),
+            count => warnings.whole(format!("{count} colours lie outside 0 to {most}: cut off")),
+        }
+        let scaled = |value: u8| {
+            let share = f32::from(value.min(most)) / f32::from(most);
+            (share * 255.0).round() as u8
         };
         let colour = |rgb: &[u8]| Srgb(scaled(rgb[0]), scaled(rgb[1]), scaled(rgb[2]));
         Ok(channels.chunks_exact(3).map(colour).collect())

@@ -14,6 +14,7 @@ use glam::{Vec2, Vec3};
 use super::geometry::{Direction, WeaveGeometry};
 use super::recipe::{RecipeError, YarnRecipe};
 use crate::design::{Design, Positions, WeavePattern, YarnId};
+use crate::limits::YARN_CROSSINGS;
 
 /// Threads laid beyond the window on each side.
 const MARGIN: i64 = 4;
@@ -21,8 +22,6 @@ const MARGIN: i64 = 4;
 const SECTIONS: usize = 8;
 /// Points round a section.
 pub const ROUND: usize = 12;
-/// Most crossings that are laid at once: about 600 MB of sections and points.
-const MOST: u64 = 1 << 16;
 /// Seed of what is uneven.
 const SEED: u64 = 1;
 
@@ -35,7 +34,7 @@ pub enum TubesError {
     /// Too many crossings.
     #[error(
         "the yarns of {0} x {1} crossings are too many for one file: choose a region of at most \
-         {MOST} crossings"
+         {YARN_CROSSINGS} crossings"
     )]
     TooMany(u64, u64),
     /// A yarn that cannot be built.
@@ -114,8 +113,8 @@ pub fn tubes(
     if width == 0 || height == 0 {
         return Err(TubesError::Empty(width, height));
     }
-    let with_margin = |side: u64| side.saturating_add(2 * MARGIN as u64);
-    if with_margin(width).saturating_mul(with_margin(height)) > MOST {
+    // What lies around the window is laid and thrown away, and is of no file.
+    if width.saturating_mul(height) > YARN_CROSSINGS {
         return Err(TubesError::TooMany(width, height));
     }
     let window = Window {

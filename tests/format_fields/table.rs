@@ -2,7 +2,12 @@
 
 use super::Walker;
 
+#[path = "drafts.rs"]
+mod drafts;
+
 /// One walker a format.
 pub fn walkers() -> Vec<Walker> {
-    Vec::new()
+    let mut walkers = Vec::new();
+    walkers.extend(drafts::walkers());
+    walkers
 }

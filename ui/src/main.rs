@@ -19,8 +19,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
-    let cli = cli::Cli::parse();
+    out::start_log();
+    let cli = cli::Cli::try_parse().unwrap_or_else(|error| out::usage(&error));
     match commands::run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pickglass::design::{Design, Sett};
 use pickglass::formats::image::{ImageAs, ImageContent, ImageReading};
-use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, presets};
+use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, jc5, presets};
 
 use crate::cli::{ConvertArgs, ImageArgs, SettArgs};
 
@@ -57,7 +57,16 @@ impl Opened {
             warp: image.warp_map.clone(),
             weft: image.weft_map.clone(),
         };
-        let Imported { design, warnings } = formats::with_map_files(imported, &files, &options)?;
+        let Imported {
+            design,
+            mut warnings,
+        } = formats::with_map_files(imported, &files, &options)?;
+        for warning in warnings
+            .iter_mut()
+            .filter(|warning| *warning == jc5::FACE_UP)
+        {
+            warning.push_str(", with --face-down");
+        }
         Ok(Self::new(design, warnings, path))
     }
 

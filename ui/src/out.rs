@@ -1,14 +1,46 @@
 //! What the program says: results on standard output, progress and errors on standard
 //! error. A closed pipe is the reader's choice, never a panic.
+//!
+//! This is the door to the terminal: every line goes through [`visible`], for it may hold
+//! what a file says. JSON has escapes of its own and goes out as it is.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use pickglass::job::Job;
+use pickglass::text::{visible, with_causes};
+
+/// What is said, line by line.
+pub trait Lines {
+    /// The lines.
+    fn lines(&self) -> impl Iterator<Item = &str>;
+}
+
+/// Each text is one line, whatever it holds.
+impl Lines for Vec<String> {
+    fn lines(&self) -> impl Iterator<Item = &str> {
+        self.iter().map(String::as_str)
+    }
+}
+
+/// A text of the program's own: its line breaks are meant.
+impl Lines for String {
+    fn lines(&self) -> impl Iterator<Item = &str> {
+        self.split('\n')
+    }
+}
+
+/// Writes lines to standard output.
+pub fn say(said: &impl Lines) -> anyhow::Result<()> {
+    let shown: Vec<_> = said.lines().map(visible).collect();
+    write_out(&shown.join("\n"))
+}
 
 /// Writes `text` to standard output. A broken pipe ends the writing in silence.
-pub fn say(text: &str) -> anyhow::Result<()> {
+fn write_out(text: &str) -> anyhow::Result<()> {
     let mut stdout = std::io::stdout().lock();
     match stdout
         .write_all(text.as_bytes())
@@ -22,21 +54,56 @@ pub fn say(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Writes one JSON object to standard output.
-pub fn say_json(value: &serde_json::Value) -> anyhow::Result<()> {
-    say(&value.to_string())
+/// A path on one line.
+pub fn shown(path: &Path) -> String {
+    visible(&path.display().to_string()).into_owned()
 }
 
-/// Writes a remark to standard error; a closed standard error is nobody's concern.
+/// Writes one JSON object to standard output.
+pub fn say_json(value: &serde_json::Value) -> anyhow::Result<()> {
+    write_out(&value.to_string())
+}
+
+/// Writes a remark of one line to standard error; a closed standard error is nobody's
+/// concern.
 pub fn note(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", visible(text));
 }
 
 /// Writes the one line of an error: the thing, the place, the remedy.
 pub fn error_line(error: &anyhow::Error) {
-    let text = format!("{error:#}");
-    let line: Vec<&str> = text.split_whitespace().collect();
-    note(&format!("pickglass: {}", line.join(" ")));
+    note(&format!("pickglass: {}", with_causes(error.as_ref())));
+}
+
+/// Ends the program on wrong usage, or after help: the argument that is quoted may be the
+/// name of a stranger's file.
+pub fn usage(error: &clap::Error) -> ! {
+    let text = error.to_string();
+    let mut lines = text.trim_end().split('\n');
+    if !error.use_stderr()
+        || lines
+            .clone()
+            .all(|line| matches!(visible(line), Cow::Borrowed(_)))
+    {
+        error.exit();
+    }
+    lines.by_ref().for_each(note);
+    std::process::exit(error.exit_code());
+}
+
+/// A log that writes to standard error, a line a record.
+pub fn start_log() {
+    // Unset and empty are the same: nothing is logged.
+    let wanted = std::env::var("RUST_LOG").ok();
+    let wanted = wanted.filter(|wanted| !wanted.trim().is_empty());
+    env_logger::Builder::new()
+        .parse_filters(wanted.as_deref().unwrap_or("off"))
+        .format(|out, record| {
+            let (level, target) = (record.level(), record.target());
+            let said = record.args().to_string();
+            writeln!(out, "[{level} {target}] {}", visible(&said))
+        })
+        .init();
 }
 
 /// A single line on standard error that is rewritten in place; silent when standard
@@ -89,6 +156,7 @@ impl Progress {
             return;
         }
         line.last = Some(Instant::now());
+        let text = visible(text);
         let width = text.chars().count();
         let blank = " ".repeat(line.width.saturating_sub(width));
         line.width = width;

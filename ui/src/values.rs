@@ -6,6 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use pickglass::cloth::Region;
 use pickglass::formats::volume::VolumeFormat;
 use pickglass::formats::yarns;
+use pickglass::limits;
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
@@ -50,8 +51,11 @@ pub fn sett(text: &str) -> Result<SettArg, String> {
         part.trim()
             .parse::<f64>()
             .ok()
-            .filter(|n| n.is_finite() && *n >= 0.5 && *n <= 500.0)
-            .ok_or_else(|| "expected threads per cm, 0.5 to 500, as 24 or 24x20".to_owned())
+            .filter(|n| limits::can_be_woven(10.0 / *n as f32))
+            .ok_or_else(|| {
+                let range = limits::in_words(&limits::SETT_PER_CM);
+                format!("expected threads per cm, {range}, as 24 or 24x20")
+            })
     };
     Ok(SettArg {
         ends_per_cm: threads(ends)?,
@@ -63,8 +67,11 @@ pub fn sett(text: &str) -> Result<SettArg, String> {
 pub fn per_inch(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
-        .filter(|n| (1.5..=1200.0).contains(n))
-        .ok_or_else(|| "expected threads per inch, 1.5 to 1200".to_owned())
+        .filter(|n| limits::can_be_woven(25.4 / *n as f32))
+        .ok_or_else(|| {
+            let range = limits::in_words(&limits::sett_per_inch());
+            format!("expected threads per inch, {range}")
+        })
 }
 
 /// `WxH` in pixels.

@@ -27,6 +27,8 @@ mod case_08;
 mod case_09;
 #[path = "cases/case_10.rs"]
 mod case_10;
+#[path = "cases/case_10_texts.rs"]
+mod case_10_texts;
 #[path = "cases/case_11.rs"]
 mod case_11;
 #[path = "cases/case_12.rs"]
@@ -47,3 +49,5 @@ mod case_18;
 mod case_19;
 #[path = "cases/case_20.rs"]
 mod case_20;
+#[path = "cases/case_20_limits.rs"]
+mod case_20_limits;

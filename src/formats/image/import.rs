@@ -18,6 +18,7 @@ use crate::design::{
     Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
 use crate::formats::{Imported, LoadOptions, stem};
+use crate::limits;
 
 /// The most colours that are taken for artwork without being told.
 const FLAT_COLOURS: usize = 64;
@@ -343,11 +344,11 @@ fn shade(rank: usize, count: usize, colour: Srgb) -> String {
 }
 
 /// The sett that a resolution states; `None` for programs' defaults and what cannot be
-/// woven (0.5 to 500 threads per cm).
+/// woven.
 fn stated_sett((across, down): (f32, f32)) -> Option<Sett> {
     let default = |per_cm: f32, dpi: f32| (per_cm * 2.54 - dpi).abs() < 0.6;
     let both = |dpi: f32| default(across, dpi) && default(down, dpi);
-    let woven = |per_cm: f32| (0.5..=500.0).contains(&per_cm);
+    let woven = |per_cm: f32| limits::can_be_woven(10.0 / per_cm);
     if DEFAULT_DPI.into_iter().any(both) || !woven(across) || !woven(down) {
         return None;
     }

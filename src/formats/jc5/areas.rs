@@ -1,6 +1,9 @@
 //! A card file taken apart: header, areas, rows.
 
 use crate::design::check_size;
+use crate::formats::encoding::decode_short;
+use crate::formats::field_table::Handling::{Honoured, Warned};
+use crate::formats::field_table::{Field, Table};
 use crate::formats::sheet::{Place, SheetError};
 
 /// How every file begins.
@@ -11,6 +14,27 @@ pub(super) const NAME: u32 = 1;
 pub(super) const PICKS: u32 = 2;
 pub(super) const PROGRAM: u32 = 8;
 pub(super) const AREA: u32 = 0x64;
+
+/// What a file says of sizes and threads; it has no names for it.
+pub const FIELDS: Table = Table {
+    format: "jc5",
+    fields: &[
+        Field::new("picks", Honoured, "3"),
+        Field::new("hooks", Honoured, "16"),
+        Field::new("rows", Honoured, "5a"),
+        Field::new("record 6", Warned, "1"),
+        Field::new("record 9", Warned, "1"),
+        Field::new("first number of area 1", Warned, "2"),
+        Field::new("behind the last row", Warned, "0"),
+    ],
+};
+
+/// A record that is 0 in all files that are known, and the first number of their areas.
+const NOTHING: u32 = 6;
+const USUAL_AREA: u32 = 1;
+
+/// Records beyond these are not told one by one.
+const MOST_TOLD: usize = 8;
 
 /// More areas than any harness has.
 const MAX_AREAS: u32 = 256;
@@ -67,6 +91,8 @@ pub struct CardFile<'b> {
     pub rows: &'b [u8],
     /// Bytes behind the last row, which no known file has.
     pub tail: &'b [u8],
+    /// One line each: what stands there and is not understood.
+    pub unread: Vec<String>,
 }
 
 /// Whether bytes are a card file.
@@ -108,12 +134,20 @@ impl<'b> Header<'b> {
     }
 }
 
+/// Adds what is not understood, and in the end that there is more.
+fn tell(unread: &mut Vec<String>, what: impl FnOnce() -> String) {
+    match unread.len() {
+        MOST_TOLD => unread.push("more records and areas are not read".to_owned()),
+        told if told < MOST_TOLD => unread.push(what()),
+        _ => {}
+    }
+}
+
 /// A text that ends at its first zero byte.
 fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|&byte| byte == 0);
-    let text = &bytes[..end.unwrap_or(bytes.len())];
-    let shown = text.iter().take(80).map(|&byte| char::from(byte));
-    shown.filter(|symbol| !symbol.is_control()).collect()
+    let text = decode_short(&bytes[..end.unwrap_or(bytes.len())]);
+    text.chars().take(80).collect()
 }
 
 /// Takes a card file apart. `file` is what messages call it.
@@ -127,6 +161,7 @@ pub fn parse<'b>(bytes: &'b [u8], file: &'b str) -> Result<CardFile<'b>, SheetEr
         return Err(header.wrong(0, "expected 81 FE 01 01"));
     }
     let (mut name, mut program, mut picks) = (None, None, None);
+    let mut unread = Vec::new();
     for _ in 0..header.number("the count of records")? {
         let tag = header.number("a record's tag")?;
         let length = header.number("a record's length")? as usize;
@@ -139,13 +174,16 @@ pub fn parse<'b>(bytes: &'b [u8], file: &'b str) -> Result<CardFile<'b>, SheetEr
                 Ok(count) => picks = Some((u32::from_be_bytes(count), at)),
                 Err(_) => return Err(header.wrong(at, "expected the picks in 4 bytes")),
             },
-            _ => {}
+            NOTHING if body.iter().all(|&byte| byte == 0) => {}
+            _ => tell(&mut unread, || {
+                format!("record {tag}, {length} bytes, is not read")
+            }),
         }
     }
     let Some((picks, picks_at)) = picks else {
         return Err(header.wrong(header.at, "expected a record with the picks, found none"));
     };
-    let mut areas = read_areas(&mut header)?;
+    let mut areas = read_areas(&mut header, &mut unread)?;
     let width: usize = areas.iter().map(|area| area.bytes().len()).sum();
     let hooks = width as u64 * 8;
     check_size(hooks, u64::from(picks))
@@ -168,10 +206,11 @@ pub fn parse<'b>(bytes: &'b [u8], file: &'b str) -> Result<CardFile<'b>, SheetEr
         header: &bytes[..header.at],
         rows,
         tail,
+        unread,
     })
 }
 
-fn read_areas(header: &mut Header<'_>) -> Result<Vec<Area>, SheetError> {
+fn read_areas(header: &mut Header<'_>, unread: &mut Vec<String>) -> Result<Vec<Area>, SheetError> {
     let at = header.at;
     let count = header.number("the count of areas")?;
     if !(1..=MAX_AREAS).contains(&count) {
@@ -185,11 +224,17 @@ fn read_areas(header: &mut Header<'_>) -> Result<Vec<Area>, SheetError> {
         let tag = header.number("an area's tag")?;
         let length = header.number("an area's length")? as usize;
         let body = header.take(length, "an area")?;
-        let (Some(AREA), Some([_, _, _, _, a, b, c, d, name @ ..])) = (Some(tag), Some(body))
+        let (Some(AREA), Some([e, f, g, h, a, b, c, d, name @ ..])) = (Some(tag), Some(body))
         else {
             let problem = format!("expected area {number} with tag 100, found tag {tag}");
             return Err(header.wrong(at, problem));
         };
+        let first = u32::from_be_bytes([*e, *f, *g, *h]);
+        if first != USUAL_AREA {
+            tell(unread, || {
+                format!("the first number of area {number} is {first}, not {USUAL_AREA}: not read")
+            });
+        }
         let hooks = u32::from_be_bytes([*a, *b, *c, *d]);
         if hooks == 0 || !hooks.is_multiple_of(8) || hooks > 1 << 24 {
             let problem = format!("expected a multiple of 8 hooks in area {number}, found {hooks}");

@@ -22,7 +22,8 @@ mod preset;
 mod read;
 mod write;
 
+pub use areas::FIELDS;
 pub use areas::{Area, CardFile, Role, parse, recognises};
 pub use preset::{LoomArea, LoomPreset, PRESETS, template};
-pub use read::read;
+pub use read::{FACE_UP, read};
 pub use write::{WriteOptions, Written, write_into};

@@ -6,6 +6,9 @@ use crate::formats::sheet::{Misfit, NO_PALETTE, Place, Sheet, SheetError, Warnin
 use crate::formats::wif::threads::Threads;
 use crate::formats::{Imported, LoadOptions};
 
+/// What is remarked on where nobody said that the cloth is woven face down.
+pub const FACE_UP: &str = "taken as woven face up: say so if it is woven face down";
+
 /// Reads the cloth of a card file: a drawdown in a white warp and a blue weft, since the
 /// loom knows no yarns. `name` is what messages call it.
 ///
@@ -24,6 +27,9 @@ pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported,
         ));
     };
     warnings.whole(card.roles());
+    for what in &card.unread {
+        warnings.whole(what.clone());
+    }
     if !card.tail.is_empty() {
         warnings.whole(format!(
             "{} bytes behind the last row are not read",
@@ -35,7 +41,7 @@ pub fn read(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported,
         warnings.whole("woven face down, as was asked: turned over like a page");
         turned_over(&lifted)
     } else {
-        warnings.whole("woven face up: for cloth woven face down, say --face-down");
+        warnings.whole(FACE_UP);
         lifted
     };
     let (white, blue) = (NO_PALETTE[0], NO_PALETTE[1]);

@@ -3,6 +3,7 @@
 use super::sheet::{BLACK, Book, GREY, MARGIN, Page};
 use crate::design::checks::{Interlacing, TakeUp, heddles, take_up, yarn_needs};
 use crate::design::{Design, Srgb, WeavePattern, YarnMap, stripes};
+use crate::text::visible;
 
 /// Height of a line in mm, and of its text.
 const LINE: f32 = 5.0;
@@ -84,7 +85,7 @@ fn yarns(list: &mut List<'_>, design: &Design, warp: &TakeUp, weft: &TakeUp) {
     ));
     for (yarn, need) in design.yarns().iter().zip(&needs.yarns).take(MOST_LISTED) {
         list.swatch(yarn.colour);
-        let name: String = yarn.name.chars().take(40).collect();
+        let name: String = visible(&yarn.name).chars().take(40).collect();
         list.columns(&[
             (8.0, &name),
             (70.0, yarn.family.name()),

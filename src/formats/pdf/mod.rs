@@ -2,7 +2,8 @@
 //!
 //! First what the weaver needs to dress the loom: threading, tie-up and treadling with their
 //! numbers, then yarns, orders and heddles, then the cloth in its own size, cut into pages.
-//! Text is set in Helvetica, which every reader has; signs outside Latin-1 become `?`.
+//! Text is set in Helvetica, which every reader has; signs outside
+//! Windows-1252 become `?`, and hidden ones are written out.
 
 mod cloth;
 mod draft;

@@ -1,10 +1,12 @@
 //! Pages to draw on in mm from the lower left corner, and the file made of them.
 
+use encoding_rs::WINDOWS_1252;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
 use super::Paper;
 use crate::design::Srgb;
+use crate::text::visible;
 
 /// PDF points in a mm.
 const POINTS: f32 = 72.0 / 25.4;
@@ -90,7 +92,7 @@ impl Book {
             .kids(ids.iter().map(|(page, _, _)| *page))
             .count(count);
         pdf.document_info(about)
-            .title(TextStr(title))
+            .title(TextStr(&visible(title)))
             .producer(TextStr("Pickglass"));
         for (font, name) in [(font, "Helvetica"), (bold, "Helvetica-Bold")] {
             pdf.type1_font(font)
@@ -148,7 +150,7 @@ impl Page {
             .begin_text()
             .set_font(font, size * POINTS)
             .next_line(x * POINTS, y * POINTS)
-            .show(Str(&latin(text)))
+            .show(Str(&windows_1252(text)))
             .end_text();
     }
 
@@ -222,19 +224,34 @@ impl Page {
     }
 }
 
-/// A text in Windows' Latin-1; other signs become `?`.
-fn latin(text: &str) -> Vec<u8> {
-    let sign = |symbol: char| match symbol {
-        ' '..='~' | '\u{a0}'..='\u{ff}' => symbol as u32 as u8,
-        '–' => 0x96,
-        '—' => 0x97,
-        '‘' => 0x91,
-        '’' => 0x92,
-        '“' => 0x93,
-        '”' => 0x94,
-        '…' => 0x85,
-        '€' => 0x80,
-        _ => b'?',
-    };
-    text.chars().map(sign).collect()
+/// A text in Windows-1252, hidden signs written out; signs that it lacks become `?`.
+fn windows_1252(text: &str) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(text.len());
+    for sign in visible(text).chars() {
+        let mut room = [0; 4];
+        match WINDOWS_1252.encode(sign.encode_utf8(&mut room)) {
+            (sign, _, false) => bytes.extend_from_slice(&sign),
+            (_, _, true) => bytes.push(b'?'),
+        }
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hidden_signs_are_written_out() {
+        assert_eq!(
+            windows_1252("Köper – \u{1b}[2J\u{202e}\n綾"),
+            b"K\xf6per \x96 \\u{1b}[2J\\u{202e}\\n?"
+        );
+        let mut book = Book::new(Paper::A4);
+        book.add(book.page());
+        let file = book.finish("a\u{1b}b\u{202e}c");
+        let has = |part: &[u8]| file.windows(part.len()).any(|at| at == part);
+        // A title of ASCII alone is written as it is.
+        assert!(has(b"u{1b}b") && has(b"u{202e}c") && !has(b"\x1b"));
+    }
 }

@@ -198,7 +198,7 @@ struct SectionV1 {
 }
 
 /// The most yarns that can be numbered.
-const MAX_YARNS: usize = 1 << 16;
+const MAX_YARNS: usize = crate::limits::YARNS;
 /// The most regions that can be numbered.
 const MAX_REGIONS: usize = 1 << 16;
 /// More sections than any program writes.

@@ -4,7 +4,7 @@
 //! `write` makes a file of a design. Where the specification is silent or real programs
 //! differ from it, this is what is done here:
 //!
-//! * **Text**: UTF-8 (byte order mark or not), else Latin-1; any line ending; section names
+//! * **Text**: as `encoding` says (UTF-8, UTF-16, Windows-1252); any line ending; section names
 //!   and keys in any case; lines that begin with `;` are comments, and so is what follows
 //!   a `;` behind a number or boolean; `\` at the end of a list continues it. Junk before
 //!   the first section, a missing `[WIF]`, lines without `=` and repeated keys (the last
@@ -23,9 +23,10 @@
 //!   is pressed but neither declared nor tied up is refused. Thread counts are checked
 //!   before memory is asked for.
 //! * **Colours**: channels are scaled from `Range`; no palette at all means white warp and
-//!   blue weft; a missing default index is 1 for the warp and 2 for the weft. A colour that
-//!   is not in the table is refused where a thread needs it, and warned about where it is
-//!   only an unused default.
+//!   blue weft; a missing default index is 1 for the warp and 2 for the weft. A number that
+//!   the table lacks gets a colour that stands in (the direction's default, else the table's
+//!   first for the warp and second for the weft), counted in one warning. Where colour 0 is
+//!   named and all numbers have a colour one further on, the file counts colours from 0.
 //! * **Spacing** is the pitch, **thickness** the drawn width: a thickness above the spacing
 //!   means that yarns touch. `Units` missing: the numbers say nothing about size and only
 //!   their ratios are used. 0.212 cm is Fiberworks' and TempoWeave's default, not a sett:
@@ -34,16 +35,18 @@
 //!   sections are kept word for word and written back.
 
 mod colours;
+mod fields;
 mod read;
 pub(super) mod text;
 pub(super) mod threads;
 mod write;
 
+pub use fields::FIELDS;
 pub use read::{read, read_with};
 pub use write::{Written, write};
 
 /// The most ends or picks a file may declare.
-pub const MAX_THREADS: u32 = 100_000;
+pub const MAX_THREADS: u32 = crate::limits::DRAFT_THREADS;
 
 /// The program default that is no sett, in cm.
 pub const DEFAULT_SPACING_CM: f32 = 0.212;

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use super::fields::name_unfollowed;
 use super::text::{self, Section, bare, boolean, same, shorten};
 use super::threads::{self, Direction};
 use super::{DEFAULT_SPACING_CM, MAX_THREADS, WifError, colours};
@@ -10,6 +11,7 @@ use crate::design::{
     Draft, FirstEnd, FirstPick, ForeignSection, Lifting, MAX_SHAFTS, Shed, Structure, Ties,
     check_size,
 };
+use crate::formats::encoding::decode;
 use crate::formats::sheet::{
     Active, Misfit, Sheet, Warnings, at_least, tieup_or_plan, warn_unused_threads, without_path,
 };
@@ -108,27 +110,26 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Imported, WifError> {
 /// # Errors
 /// As [`read`].
 pub fn read_with(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Imported, WifError> {
-    let text = text::decode(bytes);
+    let mut warnings = Warnings::default();
+    let text = decode(bytes, &mut warnings);
     let file = File {
         name,
         sections: text::sections(&text, name, known)?,
     };
-    let mut warnings = Warnings::default();
     if !file.sections.iter().any(|section| known(section.name)) {
         let problem = "expected a WIF with sections like [WEAVING] and [THREADING], found none";
         return Err(WifError::whole(name, problem, "choose a .wif file"));
     }
     check_shape(&file, &mut warnings);
+    name_unfollowed(&file, &mut warnings);
     let (draft, zero_based) = read_draft(&file, &mut warnings)?;
     let active = Active::of(&draft);
     let palette = colours::Palette::read(&file, &mut warnings)?;
     let base = u32::from(!zero_based);
     let warp = threads::read(&file, Direction::Warp, draft.ends(), base, &mut warnings)?;
     let weft = threads::read(&file, Direction::Weft, draft.picks(), base, &mut warnings)?;
-    let warp_colours =
-        palette.choose(&file, Direction::Warp, &warp, &active.ends, &mut warnings)?;
-    let weft_colours =
-        palette.choose(&file, Direction::Weft, &weft, &active.picks, &mut warnings)?;
+    let [warp_colours, weft_colours] =
+        palette.choose((&warp, &active.ends), (&weft, &active.picks), &mut warnings);
     let (title, notes) = read_texts(&file, &mut warnings);
     let sheet = Sheet {
         file: name,

@@ -1,4 +1,4 @@
-//! The text of a WIF: encoding, sections, keys and values, with their line numbers.
+//! The text of a WIF: sections, keys and values, with their line numbers.
 //!
 //! Nothing is copied out of the text: a section is a name and a stretch of lines, and its
 //! entries are read again by whoever wants them, so that memory stays near the file's size.
@@ -6,18 +6,10 @@
 use std::borrow::Cow;
 
 use super::WifError;
+use crate::text::visible;
 
 /// More sections than any program writes; a guard against files made of headers.
 const MAX_SECTIONS: usize = 4096;
-
-/// The text of a file: UTF-8 with or without a byte order mark, or else Latin-1.
-pub(in crate::formats) fn decode(bytes: &[u8]) -> Cow<'_, str> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Cow::Borrowed(text),
-        Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
-    }
-}
 
 /// A section: what stands between its header and the next.
 #[derive(Debug, Clone, Copy)]
@@ -211,12 +203,9 @@ pub(super) fn bare(value: &str) -> &str {
 
 /// At most 40 characters of a text, for a message.
 pub(in crate::formats) fn shorten(text: &str) -> String {
-    let mut short: String = text
-        .chars()
-        .take(40)
-        .map(|symbol| if symbol.is_control() { ' ' } else { symbol })
-        .collect();
-    if text.chars().nth(40).is_some() {
+    let end = text.char_indices().nth(40).map_or(text.len(), |at| at.0);
+    let mut short = visible(&text[..end]).into_owned();
+    if end < text.len() {
         short.push('…');
     }
     short
@@ -253,12 +242,6 @@ mod tests {
             assert_eq!(found[2].entries(false).next().unwrap().line, 7);
             assert_eq!(found[0].entries(false).next().unwrap().line, 1);
         }
-    }
-
-    #[test]
-    fn latin_1_is_read_where_utf_8_fails() {
-        assert_eq!(decode(b"\xef\xbb\xbfa=\xc3\xa9"), "a=é");
-        assert_eq!(decode(b"a=\xe9"), "a=é");
     }
 
     #[test]

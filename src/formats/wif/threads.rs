@@ -1,6 +1,7 @@
 //! What a WIF says about single threads: colour number, spacing, thickness.
 
 use std::collections::BTreeMap;
+use std::num::{IntErrorKind, ParseIntError};
 
 use super::WifError;
 use super::colours::channels;
@@ -11,10 +12,11 @@ use crate::design::{
 };
 use crate::formats::LoadOptions;
 use crate::formats::sheet::Warnings;
+use crate::limits;
 
 /// Warp or weft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Direction {
+pub(in crate::formats) enum Direction {
     Warp = 0,
     Weft = 1,
 }
@@ -48,12 +50,12 @@ enum List {
 
 /// The threads of one direction as the file describes them.
 pub(in crate::formats) struct Threads {
-    /// Default colour number, with its line.
-    pub default_colour: Option<(u32, u32)>,
-    /// Default colour given as channels, for files without a table.
-    pub default_rgb: Option<Srgb>,
-    /// Line and colour number of each thread that has its own.
-    pub colours: Vec<Option<(u32, u32)>>,
+    /// Default colour number as written, with its line.
+    pub default_colour: Option<(u32, i64)>,
+    /// Channels behind the default number, for files whose table lacks it.
+    pub default_channels: Option<[f32; 3]>,
+    /// Line and colour number, as written, of each thread that has its own.
+    pub colours: Vec<Option<(u32, i64)>>,
     unit: Option<String>,
     unit_mm: Option<f32>,
     spacing: Option<f32>,
@@ -70,7 +72,7 @@ impl Threads {
         let (unit, spacing) = spacing.unzip();
         Self {
             default_colour: None,
-            default_rgb: None,
+            default_channels: None,
             colours: vec![None; count],
             unit: unit.map(str::to_owned),
             unit_mm: unit.and_then(unit_mm),
@@ -143,10 +145,10 @@ pub(super) fn read(
     };
     let spacing = length("Spacing")?;
     let thickness = length("Thickness")?;
-    let (default_colour, default_rgb) = default_colour(file, section)?;
+    let (default_colour, default_channels) = default_colour(file, section)?;
     Ok(Threads {
         default_colour,
-        default_rgb,
+        default_channels,
         colours: colours(file, direction, count, base, warnings)?,
         unit: unit.map(|(_, unit)| unit),
         unit_mm: factor,
@@ -240,8 +242,8 @@ fn measures(
 }
 
 /// `Color=number` or `Color=number,red,green,blue`: the number with its line, and the
-/// channels for files without a table.
-type DefaultColour = (Option<(u32, u32)>, Option<Srgb>);
+/// channels.
+type DefaultColour = (Option<(u32, i64)>, Option<[f32; 3]>);
 
 fn default_colour(file: &File<'_>, section: &'static str) -> Result<DefaultColour, WifError> {
     let Some((line, value)) = file.value(section, "Color") else {
@@ -252,29 +254,29 @@ fn default_colour(file: &File<'_>, section: &'static str) -> Result<DefaultColou
         return Ok((None, None));
     }
     let number = colour_number(file, line, section, value)?;
-    let rgb = value
-        .split_once(',')
-        .and_then(|(_, rest)| channels(rest))
-        .filter(|channels| channels.iter().all(|value| (0.0..=255.0).contains(value)))
-        .map(|channels| channels.map(|value| value as u8))
-        .map(|[red, green, blue]| Srgb(red, green, blue));
-    Ok((Some((line, number)), rgb))
+    let rest = value.split_once(',').and_then(|(_, rest)| channels(rest));
+    Ok((Some((line, number)), rest))
 }
 
-/// The colour number before any channels.
-fn colour_number(file: &File<'_>, line: u32, place: &str, value: &str) -> Result<u32, WifError> {
+/// The colour number before any channels. Whole numbers that no table can have are numbers
+/// all the same: the nearest that can be told.
+fn colour_number(file: &File<'_>, line: u32, place: &str, value: &str) -> Result<i64, WifError> {
     let first = value.split(',').next().unwrap_or(value).trim();
-    first.parse().map_err(|_| {
-        WifError::at(
-            file.name,
-            line,
-            format!(
-                "expected a colour's number in [{place}], found \"{}\"",
-                shorten(first)
-            ),
-            "use a number from [COLOR TABLE]",
-        )
-    })
+    first
+        .parse()
+        .or_else(|error: ParseIntError| match error.kind() {
+            IntErrorKind::PosOverflow => Ok(i64::MAX),
+            IntErrorKind::NegOverflow => Ok(i64::MIN),
+            _ => Err(WifError::at(
+                file.name,
+                line,
+                format!(
+                    "expected a colour's number in [{place}], found \"{}\"",
+                    shorten(first)
+                ),
+                "use a number from [COLOR TABLE]",
+            )),
+        })
 }
 
 fn colours(
@@ -283,7 +285,7 @@ fn colours(
     count: u32,
     base: u32,
     warnings: &mut Warnings,
-) -> Result<Vec<Option<(u32, u32)>>, WifError> {
+) -> Result<Vec<Option<(u32, i64)>>, WifError> {
     let list = direction.list(List::Colours);
     let mut found = vec![None; count as usize];
     for section in file.all(list) {
@@ -329,16 +331,13 @@ impl Spacing {
         let millimetres = |threads: &Threads| Some(threads.spacing? * threads.unit_mm?);
         let stated = [millimetres(warp), millimetres(weft)];
         let believed = stated.map(|spacing| {
-            spacing.filter(|&mm| {
-                (MIN_PITCH_MM..=MAX_PITCH_MM).contains(&mm) && !is_program_default(mm)
-            })
+            spacing.filter(|&mm| limits::can_be_woven(mm) && !is_program_default(mm))
         });
         if let Some((ends, picks)) = options.sett {
             for (per_cm, what) in [(ends, "ends"), (picks, "picks")] {
-                if !(MIN_PITCH_MM..=MAX_PITCH_MM).contains(&(10.0 / per_cm)) {
-                    return Err(format!(
-                        "expected 0.1 to 10000 {what} per cm, found {per_cm}"
-                    ));
+                if !limits::can_be_woven(10.0 / per_cm) {
+                    let range = limits::in_words(&limits::SETT_PER_CM);
+                    return Err(format!("expected {range} {what} per cm, found {per_cm}"));
                 }
             }
             return Ok(Self {
@@ -358,9 +357,11 @@ impl Spacing {
                     "[{side}] spacing of 0.212 cm is a drawing program's default, no sett: what \
                      is usual for the yarn is taken; give a sett"
                 ));
-            } else if mm.is_some_and(|mm| !(MIN_PITCH_MM..=MAX_PITCH_MM).contains(&mm)) {
+            } else if mm.is_some_and(|mm| !limits::can_be_woven(mm)) {
+                let range = limits::in_words(&limits::PITCH_MM);
                 warnings.whole(format!(
-                    "[{side}] Spacing is no cloth's: what is usual for the yarn is taken"
+                    "[{side}] Spacing is no cloth's ({range} mm): what is usual for the yarn is \
+                     taken"
                 ));
             }
             if threads.thickness > threads.spacing && threads.spacing.is_some() {
@@ -448,8 +449,8 @@ impl Side {
     }
 }
 
-/// The yarns in use, and which each end and pick is: one yarn for each colour number and
-/// diameter.
+/// The yarns in use, and which each end and pick is: one yarn for each colour number,
+/// colour and diameter. (One number has two colours where the file has none for it.)
 pub(in crate::formats) type Yarns = (Vec<Yarn>, Vec<YarnId>, Vec<YarnId>);
 
 pub(in crate::formats) fn yarns(
@@ -458,19 +459,19 @@ pub(in crate::formats) fn yarns(
     warp: &[(u32, Srgb)],
     weft: &[(u32, Srgb)],
 ) -> Result<Yarns, String> {
-    let mut known: BTreeMap<(u32, Option<u32>), YarnId> = BTreeMap::new();
+    let mut known: BTreeMap<(u32, Srgb, Option<u32>), YarnId> = BTreeMap::new();
     let mut yarns: Vec<Yarn> = Vec::new();
     let mut order = |side: &Side, chosen: &[(u32, Srgb)]| -> Result<Vec<YarnId>, String> {
         let mut order = Vec::with_capacity(side.threads);
         for (thread, &(number, colour)) in chosen.iter().enumerate() {
             let diameter_mm = side.diameter(thread, family);
-            let key = (number, diameter_mm.map(f32::to_bits));
+            let key = (number, colour, diameter_mm.map(f32::to_bits));
             let id = match known.get(&key) {
                 Some(&id) => id,
                 None => {
-                    let id = u16::try_from(yarns.len())
-                        .map(YarnId)
-                        .map_err(|_| "expected at most 65536 different yarns".to_owned())?;
+                    let id = u16::try_from(yarns.len()).map(YarnId).map_err(|_| {
+                        format!("expected at most {} different yarns", limits::YARNS)
+                    })?;
                     yarns.push(Yarn {
                         diameter_mm,
                         ..Yarn::new(format!("colour {number}"), family, colour)

@@ -140,7 +140,7 @@ fn per_cm(density: &Density) -> f32 {
     10.0 / density.mean_pitch_mm()
 }
 
-fn describe(opened: &Opened, report: &MillReport, warnings: &[String]) -> String {
+fn describe(opened: &Opened, report: &MillReport, warnings: &[String]) -> Vec<String> {
     let design = &opened.design;
     let [width, height] = report.weave_repeat_mm.map(|mm| mm / 10.0);
     let [cloth_width, cloth_height] = report.cloth_repeat_mm.map(|mm| mm / 10.0);
@@ -200,7 +200,10 @@ fn describe(opened: &Opened, report: &MillReport, warnings: &[String]) -> String
         false => format!("no loom weaves it: {}", report.obstacles.join("; ")),
     });
     lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
-    lines.join("\n  ")
+    for line in &mut lines[1..] {
+        line.insert_str(0, "  ");
+    }
+    lines
 }
 
 /// A remark where threads are closer than round ones can lie.

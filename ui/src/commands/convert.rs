@@ -21,11 +21,9 @@ pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
     if args.json {
         return out::say_json(&json!({ "written": written, "lost": lost }));
     }
-    let mut text = format!("wrote {written}");
-    for line in &lost {
-        text += &format!("\n  lost: {line}");
-    }
-    out::say(&text)
+    let mut lines = vec![format!("wrote {written}")];
+    lines.extend(lost.iter().map(|line| format!("  lost: {line}")));
+    out::say(&lines)
 }
 
 /// Writes a design in the format of the path's ending; returns what had no place in it.

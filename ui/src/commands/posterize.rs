@@ -144,7 +144,7 @@ fn describe(made: &Posterised, path: &Path, seconds: f64) -> String {
     };
     let mut text = format!(
         "wrote {}: {} ends × {} picks in {seconds:.2} s, {kind}, warp {warp}, weft {weft}",
-        path.display(),
+        out::shown(path),
         made.design.ends(),
         made.design.picks(),
     );

@@ -139,7 +139,7 @@ pub fn describe(report: &StillReport, path: &Path) -> String {
     };
     format!(
         "wrote {} ({} x {}, {} spp{error}{level}, {:.1} s, {:.2} M paths/s){wrong}",
-        path.display(),
+        out::shown(path),
         report.width,
         report.height,
         report.spp,

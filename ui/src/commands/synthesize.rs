@@ -144,26 +144,35 @@ impl Report {
         })
     }
 
-    fn describe(&self, name: &str) -> String {
+    fn describe(&self, name: &str) -> Vec<String> {
         let quality = &self.quality;
         let share = |part: u64, whole: u64| 100.0 * part as f64 / whole.max(1) as f64;
         let continuity = quality.continuity;
-        format!(
-            "{name}: {} crossings in {:.3} s, {:.2} MB (exemplars {:.1} s)\n  \
-             consistent {:.2} %, {} crossings with the wrong yarn on top, {} with a neighbour amiss\n  \
-             continuous {:.2} %, {:.2} % after shifting\n  \
-             seams {:.2} µm, {:.2} µm after edge fixing",
-            quality.crossings,
-            self.total(),
-            self.bytes as f64 / 1e6,
-            self.exemplar_seconds,
-            share(quality.consistency, quality.consistency_max),
-            quality.incorrect,
-            quality.mismatched,
-            share(continuity.before, continuity.max),
-            share(continuity.after, continuity.max),
-            self.seams.before * self.voxel_mm * 1e3,
-            self.seams.after * self.voxel_mm * 1e3,
-        )
+        vec![
+            format!(
+                "{name}: {} crossings in {:.3} s, {:.2} MB (exemplars {:.1} s)",
+                quality.crossings,
+                self.total(),
+                self.bytes as f64 / 1e6,
+                self.exemplar_seconds,
+            ),
+            format!(
+                "  consistent {:.2} %, {} crossings with the wrong yarn on top, {} with a \
+                 neighbour amiss",
+                share(quality.consistency, quality.consistency_max),
+                quality.incorrect,
+                quality.mismatched,
+            ),
+            format!(
+                "  continuous {:.2} %, {:.2} % after shifting",
+                share(continuity.before, continuity.max),
+                share(continuity.after, continuity.max),
+            ),
+            format!(
+                "  seams {:.2} µm, {:.2} µm after edge fixing",
+                self.seams.before * self.voxel_mm * 1e3,
+                self.seams.after * self.voxel_mm * 1e3,
+            ),
+        ]
     }
 }

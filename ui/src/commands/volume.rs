@@ -88,10 +88,7 @@ fn region(args: &VolumeArgs, opened: &Opened) -> Region {
 }
 
 fn wrote(files: &[PathBuf], bytes: u64, seconds: f64) -> String {
-    let list: Vec<String> = files
-        .iter()
-        .map(|file| file.display().to_string())
-        .collect();
+    let list: Vec<String> = files.iter().map(|file| out::shown(file)).collect();
     format!(
         "wrote {} ({}, {seconds:.1} s)",
         list.join(", "),

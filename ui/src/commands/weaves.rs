@@ -21,27 +21,32 @@ fn one(name: &str, as_json: bool) -> anyhow::Result<()> {
         if as_json {
             return out::say_json(&json!({ "weaves": [drawn_json(name, &pattern)] }));
         }
-        return out::say(&format!("{name}\n{}", pattern.to_string().trim_end()));
+        let mut lines = vec![name.to_owned()];
+        draw(&mut lines, &pattern);
+        return out::say(&lines);
     };
     if as_json {
         return out::say_json(&json!({ "weaves": [entry_json(known)] }));
     }
-    let mut text = line(known);
-    text += &format!("\n  {}", known.notation());
+    let mut lines = vec![line(known), format!("  {}", known.notation())];
     if let Some(colours) = known.colours() {
-        text += &format!(
-            "\n  warp {}, weft {} (D dark, L light)",
+        lines.push(format!(
+            "  warp {}, weft {} (D dark, L light)",
             letters(&colours.warp),
             letters(&colours.weft)
-        );
+        ));
     }
     if known.preview_only() {
-        text += "\n  preview only: a map of two layers, drawn as one";
+        lines.push("  preview only: a map of two layers, drawn as one".to_owned());
     }
-    out::say(&format!(
-        "{text}\n{}",
-        known.pattern().to_string().trim_end()
-    ))
+    draw(&mut lines, known.pattern());
+    out::say(&lines)
+}
+
+/// Adds a pattern, a line a pick.
+fn draw(lines: &mut Vec<String>, pattern: &WeavePattern) {
+    let drawn = pattern.to_string();
+    lines.extend(drawn.trim_end().lines().map(str::to_owned));
 }
 
 fn list(family: Option<&str>, as_json: bool) -> anyhow::Result<()> {
@@ -70,7 +75,7 @@ fn list(family: Option<&str>, as_json: bool) -> anyhow::Result<()> {
         }
         lines.push(format!("  {}", line(weave)));
     }
-    out::say(&lines.join("\n"))
+    out::say(&lines)
 }
 
 fn same(family: &str, asked: &str) -> bool {

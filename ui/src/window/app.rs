@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use egui::{CentralPanel, Frame, Id, Panel, Rect, ViewportCommand};
 use pickglass::edit::{Document, recovery};
+use pickglass::text::visible;
 
 use super::action::Action;
 use super::asking::Asking;
@@ -230,7 +231,7 @@ impl App {
             } else {
                 ""
             };
-            format!("{}{mark}", session.name())
+            format!("{}{mark}", visible(session.name()))
         });
         let choice = menu::show(ui, &self.situation(), &title);
         let ctx = ui.ctx().clone();

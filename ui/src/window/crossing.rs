@@ -2,6 +2,7 @@
 
 use pickglass::design::{FaceFloat, Structure, float_through};
 use pickglass::edit::Document;
+use pickglass::text::visible;
 
 use super::draft::end_number;
 use super::laid;
@@ -23,7 +24,7 @@ pub fn describe(
     let lattice = design.lattice();
     let (home_end, home_pick) = lattice.wrap(end, pick, drawdown.ends(), drawdown.picks())?;
     let FaceFloat { warp, length, .. } = float_through(drawdown, lattice, (end, pick), LONGEST)?;
-    let name = |yarn| design.yarn(yarn).name.as_str();
+    let name = |yarn| visible(&design.yarn(yarn).name);
     let (end_yarn, pick_yarn) = (
         name(design.warp_yarn(end, pick)),
         name(design.weft_yarn(end, pick)),
@@ -43,7 +44,7 @@ pub fn describe(
         Structure::Regions(regions) => {
             let number = regions.map().get(home_end, home_pick);
             let region = regions.palette().get(usize::from(number))?;
-            format!(" · {}", region.name)
+            format!(" · {}", visible(&region.name))
         }
         _ => String::new(),
     };

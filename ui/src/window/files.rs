@@ -11,7 +11,8 @@ use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::pdf::{self, PdfOptions};
-use pickglass::formats::{self, SaveOptions, atomic, photo};
+use pickglass::formats::{self, SaveOptions, atomic, jc5, photo};
+use pickglass::text::with_causes;
 
 use super::dialog;
 use super::image_form::{self, ImageForm};
@@ -45,6 +46,8 @@ pub enum FileEvent {
     },
     /// An image, of which more is to be asked than it says.
     Image(PathBuf),
+    /// A loom file, likewise.
+    Loom(PathBuf),
     /// A picture to draw by.
     Reference {
         path: PathBuf,
@@ -272,9 +275,10 @@ impl Files {
     /// Opens a file.
     pub fn open(&mut self, ctx: &egui::Context, path: PathBuf) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
-        let work = move || match is_image(&path) {
-            true => FileEvent::Image(path),
-            false => opened(Opened::file(path)),
+        let work = move || match head(&path) {
+            head if Encoding::of(&head).is_some() => FileEvent::Image(path),
+            head if jc5::recognises(&head) => FileEvent::Loom(path),
+            _ => opened(Opened::file(path)),
         };
         self.begin_reading(ctx, &name.to_string_lossy(), work);
     }
@@ -535,16 +539,19 @@ fn opened(read: anyhow::Result<Opened>) -> FileEvent {
             let session = Box::new(Session::of(&opened));
             FileEvent::Opened(Box::new(opened), session)
         }
-        Err(error) => FileEvent::OpenFailed(format!("{error:#}")),
+        Err(error) => FileEvent::OpenFailed(with_causes(error.as_ref())),
     }
 }
 
-/// Whether a file is an image by its first bytes. One that cannot be read is none: opening
-/// it says why.
-fn is_image(path: &Path) -> bool {
+/// The first bytes of a file, which tell what has to be asked about it. Of one that cannot
+/// be read there are none: opening it says why.
+fn head(path: &Path) -> Vec<u8> {
     let mut head = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut head));
-    read.is_ok() && Encoding::of(&head).is_some()
+    match read {
+        Ok(_) => head,
+        Err(_) => Vec::new(),
+    }
 }
 
 /// Writes a design as pages.

@@ -6,6 +6,7 @@ use pickglass::design::{
     Design, Lattice, Lifting, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed, WeavePattern, library, weave,
 };
 use pickglass::edit::Edit;
+use pickglass::text::visible;
 
 use super::draft;
 use crate::tokens::{self, Palette};
@@ -130,7 +131,7 @@ impl Form {
         };
         if let Some(wrong) = &wrong {
             let error = Palette::current(ui).error;
-            ui.label(RichText::new(format!("Error: {wrong}")).color(error));
+            ui.label(RichText::new(format!("Error: {}", visible(&wrong))).color(error));
         }
         ui.add_space(tokens::PAD);
         let mut filled = Filled::Open;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use egui::RichText;
 use pickglass::formats::SaveOptions;
 use pickglass::formats::image::{Black, ImageContent};
+use pickglass::text::visible;
 
 use super::{dialog, import};
 use crate::tokens::{self, Palette};
@@ -64,7 +65,7 @@ impl ImageForm {
         let modal = dialog::modal(ctx, "draft as image").show(ctx, |ui| {
             ui.set_width(tokens::TOAST_WIDTH);
             let name = self.path.file_name().unwrap_or(self.path.as_os_str());
-            let title = format!("Write the image {}", name.to_string_lossy());
+            let title = format!("Write the image {}", visible(&name.to_string_lossy()));
             ui.label(RichText::new(title).text_style(egui::TextStyle::Heading));
             self.questions_ui(ui);
             ui.add_space(tokens::PAD);

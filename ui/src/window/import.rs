@@ -8,6 +8,8 @@ use egui::{
 };
 use pickglass::formats::LoadOptions;
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageReading, Key};
+use pickglass::limits::SETT_PER_CM;
+use pickglass::text::{visible, with_causes};
 
 use super::panes::later::Later;
 use super::thumbs;
@@ -52,6 +54,8 @@ pub enum Answer {
 #[derive(Debug, Clone, PartialEq)]
 struct Answers {
     reading: ImageReading,
+    /// A loom file is of cloth that was woven face down.
+    face_down: bool,
     /// Ends and picks per cm, where the person knows better than the file.
     sett: Option<(f32, f32)>,
 }
@@ -59,9 +63,11 @@ struct Answers {
 /// What would be opened, or why nothing would.
 type Read = Result<(Opened, egui::ColorImage), String>;
 
-/// The form of one image.
+/// The form of one image or loom file.
 pub struct Import {
     path: PathBuf,
+    /// It is a loom file: hooks and picks are certain, which side is the face is not.
+    loom: bool,
     answers: Answers,
     maker: Option<Convention>,
     read: Later<Answers, Read>,
@@ -70,12 +76,22 @@ pub struct Import {
 }
 
 impl Import {
+    /// The form of the loom file at a path.
+    pub fn of_loom(path: PathBuf) -> Self {
+        Self {
+            loom: true,
+            ..Self::new(path)
+        }
+    }
+
     /// The form of the image at a path.
     pub fn new(path: PathBuf) -> Self {
         Self {
             path,
+            loom: false,
             answers: Answers {
                 reading: ImageReading::default(),
+                face_down: false,
                 sett: None,
             },
             maker: None,
@@ -90,7 +106,8 @@ impl Import {
         let mut answer = None;
         let modal = dialog::modal(ctx, "import").show(ctx, |ui| {
             let name = self.path.file_name().unwrap_or(self.path.as_os_str());
-            let title = format!("Open the image {}", name.to_string_lossy());
+            let kind = if self.loom { "loom file" } else { "image" };
+            let title = format!("Open the {kind} {}", visible(&name.to_string_lossy()));
             ui.label(RichText::new(title).text_style(egui::TextStyle::Heading));
             ui.add_space(tokens::GAP);
             let room = ctx.content_rect().height() - 44.0 * tokens::GRID;
@@ -127,9 +144,11 @@ impl Import {
                 let options = LoadOptions {
                     sett: wanted.sett,
                     image: wanted.reading,
+                    face_down: wanted.face_down,
                     ..LoadOptions::default()
                 };
-                let opened = Opened::read(path, &options).map_err(|error| format!("{error:#}"))?;
+                let opened =
+                    Opened::read(path, &options).map_err(|error| with_causes(error.as_ref()))?;
                 let image = thumbs::swatch_of(&opened.design, &opened.design.weave());
                 Ok((opened, image))
             });
@@ -147,6 +166,12 @@ impl Import {
     }
 
     fn questions_ui(&mut self, ui: &mut egui::Ui) {
+        if self.loom {
+            group(ui, "In the loom the cloth lies");
+            ui.radio_value(&mut self.answers.face_down, false, "face up");
+            ui.radio_value(&mut self.answers.face_down, true, "face down");
+            return;
+        }
         let label = ui.label("Made for or by");
         let name = |maker: Option<Convention>| maker.map_or("nobody in particular", maker_name);
         let mut maker = self.maker;
@@ -192,7 +217,7 @@ impl Import {
         }
         if let Some((ends, picks)) = &mut self.answers.sett {
             for (value, name) in [(ends, "ends/cm"), (picks, "picks/cm")] {
-                let field = DragValue::new(value).range(0.5..=400.0).speed(0.1);
+                let field = DragValue::new(value).range(SETT_PER_CM).speed(0.1);
                 let field = ui.add(field.suffix(format!(" {name}")));
                 field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
             }
@@ -232,13 +257,15 @@ impl Import {
                 let design = &opened.design;
                 ui.label(format!("{} ends × {} picks", design.ends(), design.picks()));
                 for warning in &opened.warnings {
-                    ui.label(RichText::new(warning).small().color(palette.quiet));
+                    ui.label(RichText::new(visible(warning)).small().color(palette.quiet));
                 }
             }
             Some(Err(problem)) => {
                 ui.horizontal_wrapped(|ui| {
                     icons::show(ui, Grade::Error, palette.error);
-                    ui.label(RichText::new(format!("Error: {problem}")).color(palette.error));
+                    ui.label(
+                        RichText::new(format!("Error: {}", visible(problem))).color(palette.error),
+                    );
                 });
             }
             None => {}

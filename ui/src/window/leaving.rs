@@ -1,11 +1,13 @@
 //! What is open: designs that come and go, what the threads finished, and the questions in
 //! between.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use egui::ViewportCommand;
 use pickglass::design::SourceImage;
 use pickglass::edit::Clip;
+use pickglass::text::{visible, with_causes};
 
 use super::app::App;
 use super::asking::{Answer, Next};
@@ -130,7 +132,7 @@ impl App {
         if self.session.is_none() {
             match session::blank() {
                 Ok(blank) => self.take_design(&blank, Session::of(&blank)),
-                Err(error) => return self.say(Grade::Error, format!("{error:#}"), ""),
+                Err(error) => return self.say(Grade::Error, with_causes(error.as_ref()), ""),
             }
         }
         self.panes.posterise(ctx, path);
@@ -187,6 +189,7 @@ impl App {
                 }
             }
             FileEvent::Image(path) => self.import = Some(Import::new(path)),
+            FileEvent::Loom(path) => self.import = Some(Import::of_loom(path)),
             FileEvent::Reference { path, source } => {
                 self.take_reference(ctx, path, &source);
             }
@@ -275,8 +278,8 @@ impl App {
         let name = self
             .session
             .as_ref()
-            .map_or("", |session| session.name())
-            .to_owned();
+            .map_or(Cow::Borrowed(""), |session| visible(session.name()))
+            .into_owned();
         match self.asking.show(ctx, &name) {
             Some(Answer::Save(next)) => {
                 self.asking.after_save = Some(next);

@@ -7,6 +7,7 @@ use egui::{Button, Grid, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
 use pickglass::formats::presets;
 use pickglass::render::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
+use pickglass::text::visible;
 
 use super::cloth::sheet::Kind as SheetKind;
 use super::dialog;
@@ -197,10 +198,13 @@ fn recent_ui(ui: &mut egui::Ui, recent: &[PathBuf]) -> Option<Choice> {
             let name = path.file_name().unwrap_or(path.as_os_str());
             let there = path.exists();
             let gone = if there { "" } else { " (not there any more)" };
-            let button = Button::new(format!("{}{gone}", name.to_string_lossy()));
+            let button = Button::new(format!("{}{gone}", visible(&name.to_string_lossy())));
             // A file that is gone stays listed, greyed, until newer ones push it out.
             let shown = ui.add_enabled(there, button);
-            if shown.on_hover_text(path.display().to_string()).clicked() {
+            if shown
+                .on_hover_text(visible(&path.display().to_string()))
+                .clicked()
+            {
                 choice = Some(Choice::Recent(path.clone()));
                 ui.close();
             }

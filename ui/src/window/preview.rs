@@ -6,6 +6,7 @@ use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::render::View;
 use pickglass::still::{EffectChoice, Heading, LightChoice, StillRequest, usual_width_mm};
+use pickglass::text::visible;
 
 use super::action::Action;
 use super::cloth::bar::{self, Says};
@@ -304,7 +305,7 @@ impl Preview {
             self.laid = Some(laid);
             return;
         }
-        let description = format!("Cloth of {}", laid.design.name);
+        let description = format!("Cloth of {}", visible(&laid.design.name));
         let straight = self.eye.is_none() && matches!(self.view, View::Face | View::Back);
         let marked = (self.marked.filter(|_| straight))
             .map(|(end, pick)| laid.near(view.centre_mm, end, pick));

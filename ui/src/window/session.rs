@@ -7,6 +7,7 @@ use pickglass::design::{
     Design, Draft, Family, Lifting, Shed, Srgb, Structure, Ties, Yarn, YarnId, YarnMaps, usual_sett,
 };
 use pickglass::edit::Document;
+use pickglass::text::visible;
 
 use crate::opened::Opened;
 
@@ -48,7 +49,7 @@ impl Session {
     /// The window's title: an asterisk says that something is not saved.
     pub fn title(&self) -> String {
         let mark = if self.document.is_modified() { "*" } else { "" };
-        format!("{}{mark} — Pickglass", self.name())
+        format!("{}{mark} — Pickglass", visible(self.name()))
     }
 
     /// A name of a file to propose, with this ending.

@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use egui::{Color32, Rect, RichText, Sense, Stroke, vec2};
 use pickglass::edit::recovery::Found;
 use pickglass::formats::presets;
+use pickglass::text::visible;
 
 use super::autosave::ago;
 use super::focus;
 use super::thumbs::{Source, Thumb, Thumbs};
 use crate::command_table::{Command, row_of};
+use crate::out::shown;
 use crate::tokens::{self, Palette};
 
 /// Thumbnails beside each other in a wide window.
@@ -128,8 +130,8 @@ impl StartPage {
             ui.horizontal(|ui| {
                 self.small_ui(ui, &Source::Copy(copy.path.clone()));
                 let name = match copy.name.trim() {
-                    "" => "untitled",
-                    name => name,
+                    "" => "untitled".into(),
+                    name => visible(name),
                 };
                 if ui.button(format!("Recover {name}")).clicked() {
                     choice = Some(Choice::Recover(copy.clone()));
@@ -143,7 +145,7 @@ impl StartPage {
                     choice = Some(Choice::Discard(copy.path.clone()));
                 }
                 let from = match &copy.original {
-                    Some(path) => format!("{} · {}", ago(copy.time), path.display()),
+                    Some(path) => format!("{} · {}", ago(copy.time), shown(path)),
                     None => format!("{} · in no file yet", ago(copy.time)),
                 };
                 ui.add(egui::Label::new(RichText::new(from).color(palette.quiet)).truncate());
@@ -164,15 +166,12 @@ impl StartPage {
         for path in recent.iter().take(MOST_RECENT) {
             ui.horizontal(|ui| {
                 self.small_ui(ui, &Source::File(path.clone()));
-                let name = path
-                    .file_name()
-                    .unwrap_or(path.as_os_str())
-                    .to_string_lossy();
+                let name = shown(Path::new(path.file_name().unwrap_or(path.as_os_str())));
                 let there = path.exists();
                 if ui.add_enabled(there, egui::Button::new(name)).clicked() {
                     choice = Some(Choice::Recent(path.clone()));
                 }
-                let folder = path.parent().unwrap_or(Path::new("")).display().to_string();
+                let folder = shown(path.parent().unwrap_or(Path::new("")));
                 let note = if there {
                     folder
                 } else {

@@ -12,6 +12,7 @@ use pickglass::edit::recovery;
 use pickglass::job::Job;
 use pickglass::render::View;
 use pickglass::still::{Engine, FirstSight, SightTables, StillRequest, usual_width_mm};
+use pickglass::text::visible;
 
 use crate::opened::Opened;
 
@@ -186,7 +187,7 @@ fn drawn(source: Source) -> (Option<Known>, Made) {
     let drawdown = Arc::new(design.weave());
     let made = Made {
         source: source.clone(),
-        title: design.name.clone(),
+        title: visible(&design.name).into_owned(),
         caption: caption(&design),
         image: Some(swatch_of(&design, &drawdown)),
         woven: false,
@@ -218,7 +219,7 @@ fn woven(
         }),
         ..StillRequest::default()
     };
-    let (title, caption) = (design.name.clone(), caption(&design));
+    let (title, caption) = (visible(&design.name).into_owned(), caption(&design));
     let sight = FirstSight::new(
         Arc::clone(&design),
         Arc::clone(&drawdown),

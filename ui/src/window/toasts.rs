@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use pickglass::text::visible;
+
 use egui::{Align2, Area, Frame, Id, Label, Order, RichText, Stroke, vec2};
 
 use super::icons;
@@ -48,12 +50,12 @@ const MOST: usize = 4;
 impl Toasts {
     /// Says what happened and, where something might have been lost, what was kept.
     pub fn say(&mut self, grade: Grade, text: impl Into<String>, kept: impl Into<String>) {
-        let text = text.into();
+        let text = visible(&text.into()).into_owned();
         self.0.retain(|toast| toast.text != text);
         self.0.push(Toast {
             grade,
             text,
-            kept: kept.into(),
+            kept: visible(&kept.into()).into_owned(),
             until: (grade == Grade::Done).then(|| Instant::now() + STAY),
             made: None,
         });

@@ -3,6 +3,7 @@
 use egui::{Button, Color32, DragValue, Rect, RichText, Sense, Stroke, StrokeKind, vec2};
 use pickglass::design::{Srgb, Structure, YarnId, region_colour};
 use pickglass::edit::Document;
+use pickglass::text::visible;
 
 use super::action::{Action, Button as PaintButton};
 use super::draft::{DraftPane, Layer};
@@ -160,7 +161,7 @@ fn layers_ui(ui: &mut egui::Ui, draft: &mut DraftPane, document: &Document) {
 fn yarns_ui(ui: &mut egui::Ui, draft: &DraftPane, document: &Document, actions: &mut Vec<Action>) {
     let design = document.design();
     let colours: Vec<(String, Color32)> = (design.yarns().iter())
-        .map(|yarn| (yarn.name.clone(), colour(yarn.colour)))
+        .map(|yarn| (visible(&yarn.name).into_owned(), colour(yarn.colour)))
         .collect();
     let chosen = draft.yarns.map(|yarn| usize::from(yarn.0));
     let heading = "yarns";
@@ -185,7 +186,12 @@ fn regions_ui(
         return;
     };
     let colours: Vec<(String, Color32)> = (regions.palette().iter().enumerate())
-        .map(|(index, region)| (region.name.clone(), colour(region_colour(index, region))))
+        .map(|(index, region)| {
+            (
+                visible(&region.name).into_owned(),
+                colour(region_colour(index, region)),
+            )
+        })
         .collect();
     let chosen = draft.regions.map(usize::from);
     let wish = |index: usize, button| Action::PaintRegion(index as u16, button);

@@ -12,6 +12,7 @@ use pickglass::formats::volume::{self, Attachment, VolumeFileError, bytes_in_wor
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
 use pickglass::still::{self, PreparedCloth, StillRequest};
+use pickglass::text::visible;
 use pickglass::volume::source::VoxelSource;
 use pickglass::yarn::tubes::YarnTube;
 
@@ -311,7 +312,9 @@ impl Form {
             Some(Err(wrong)) => {
                 ui.horizontal(|ui| {
                     icons::show(ui, Grade::Error, palette.error);
-                    ui.label(RichText::new(format!("Error: {wrong}")).color(palette.error));
+                    ui.label(
+                        RichText::new(format!("Error: {}", visible(&wrong))).color(palette.error),
+                    );
                 });
             }
             None => {

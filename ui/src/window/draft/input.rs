@@ -3,6 +3,7 @@
 use egui::{Key, PointerButton};
 use pickglass::edit::shapes::line;
 use pickglass::edit::{Document, Surface};
+use pickglass::text::visible;
 
 use super::super::action::{Action, Button};
 use super::super::laid;
@@ -38,7 +39,7 @@ impl DraftPane {
         grid: &CellGrid,
         actions: &mut Vec<Action>,
     ) {
-        let name = format!("Drawdown of {}", document.design().name);
+        let name = format!("Drawdown of {}", visible(&document.design().name));
         let panning = self.panning(ui, areas);
         let mut zone = self.drawdown;
         let to_cell = |at| grid.crossing(at);

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use egui::{Color32, Painter, Pos2, Rect, RichText, Slider, TextureHandle, TextureOptions, pos2};
 use pickglass::design::{Design, SourceImage};
+use pickglass::text::visible;
 
 use super::super::picture::shrunk;
 use super::grid::CellGrid;
@@ -92,8 +93,8 @@ impl Reference {
             .show(ctx, |ui| {
                 let name = self.path.file_name().unwrap_or(self.path.as_os_str());
                 let quiet = Palette::current(ui).quiet;
-                ui.label(RichText::new(name.to_string_lossy()).color(quiet))
-                    .on_hover_text(self.path.display().to_string());
+                ui.label(RichText::new(visible(&name.to_string_lossy())).color(quiet))
+                    .on_hover_text(visible(&self.path.display().to_string()));
                 let label = ui.label("Strength");
                 let percent = Slider::new(&mut self.opacity, 0.0..=1.0)
                     .custom_formatter(|share, _| format!("{:.0} %", share * 100.0))

@@ -4,6 +4,7 @@ use egui::{RichText, ScrollArea, Sense, Stroke, TextEdit, vec2};
 use pickglass::design::{Colouring, Design, swatch};
 use pickglass::design::{Srgb, SwatchWindow, Yarn};
 use pickglass::edit::{Document, Edit};
+use pickglass::text::visible;
 
 use super::swatches;
 use crate::tokens::{self, Palette};
@@ -75,9 +76,10 @@ impl Colourways {
     ) {
         let side = THUMB as f32;
         let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
+        let shown = visible(name);
         let spoken = match at {
-            None => format!("Cloth as it is: {name}"),
-            Some(_) => format!("Use colourway {name}"),
+            None => format!("Cloth as it is: {shown}"),
+            Some(_) => format!("Use colourway {shown}"),
         };
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
         if let Some(texture) = self
@@ -106,14 +108,14 @@ impl Colourways {
             actions.push(Action::edit(Edit::UseColourway(at)));
         }
         let Some(at) = at else {
-            ui.label(RichText::new(name).strong());
+            ui.label(RichText::new(shown).strong());
             swatches_ui(ui, None, yarns, actions);
             return;
         };
         match &mut self.renaming {
             Some((renamed, text)) if *renamed == at => {
                 let field = ui.add(TextEdit::singleline(text).char_limit(80));
-                let spoken = format!("New name of {name}");
+                let spoken = format!("New name of {shown}");
                 field.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::TextInput, true, &spoken)
                 });
@@ -131,13 +133,13 @@ impl Colourways {
                 }
             }
             _ => {
-                ui.label(name);
+                ui.label(shown.as_ref());
             }
         }
         swatches_ui(ui, Some(at), yarns, actions);
         ui.horizontal(|ui| {
             let mut small = |text: &str, tip: &str| {
-                let spoken = format!("{text} {name}");
+                let spoken = format!("{text} {shown}");
                 let button = ui.small_button(text).on_hover_text(tip);
                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
                 button.clicked()

@@ -1,6 +1,7 @@
 //! Lists whose rows are widgets: cells of one width, so that what follows them lines up.
 
 use egui::{Response, TextStyle, Ui};
+use pickglass::text::visible;
 
 use crate::tokens;
 
@@ -12,7 +13,7 @@ pub fn widest<'t>(ui: &Ui, texts: impl IntoIterator<Item = &'t str>) -> f32 {
     let font = TextStyle::Button.resolve(ui.style());
     let colour = ui.visuals().text_color();
     let width = |text: &str| {
-        let text = text.to_owned();
+        let text = visible(text).into_owned();
         ui.painter()
             .layout_no_wrap(text, font.clone(), colour)
             .size()

@@ -2,6 +2,7 @@
 
 use egui::{RichText, ScrollArea};
 use pickglass::edit::Document;
+use pickglass::text::visible;
 
 use crate::tokens::Palette;
 use crate::window::action::Action;
@@ -27,7 +28,7 @@ impl History {
         self.shown = Some(present);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for (place, entry) in entries.iter().enumerate() {
-                let mut text = RichText::new(format!("{} {}", place + 1, entry.name()));
+                let mut text = RichText::new(format!("{} {}", place + 1, visible(entry.name())));
                 if place > present {
                     text = text.color(quiet).italics();
                 }

@@ -2,6 +2,7 @@
 
 use egui::{RichText, ScrollArea};
 use pickglass::edit::Document;
+use pickglass::text::visible;
 
 use crate::tokens::Palette;
 use crate::window::action::Action;
@@ -17,8 +18,9 @@ pub struct Log(std::collections::VecDeque<(Grade, String)>);
 impl Log {
     /// Adds what was said.
     pub fn add(&mut self, grade: Grade, text: &str, kept: &str) {
+        let line = format!("{text} {kept}");
         self.0
-            .push_back((grade, format!("{text} {kept}").trim_end().to_owned()));
+            .push_back((grade, visible(line.trim_end()).into_owned()));
         if self.0.len() > MOST {
             self.0.pop_front();
         }

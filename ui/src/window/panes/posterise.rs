@@ -9,6 +9,7 @@ use pickglass::design::{Design, Regions, SourceImage, Srgb, Structure};
 use pickglass::edit::{Document, Edit};
 use pickglass::formats::photo;
 use pickglass::posterise::{Fit, PosteriseSettings, Posterised, posterise};
+use pickglass::text::visible;
 
 use super::later::Later;
 use super::regions::RegionList;
@@ -199,7 +200,7 @@ impl Posterise {
         if let Some(problem) = &self.problem {
             ui.horizontal_wrapped(|ui| {
                 icons::show(ui, Grade::Warning, palette.warning);
-                ui.label(RichText::new(problem).color(palette.warning));
+                ui.label(RichText::new(visible(problem)).color(palette.warning));
             });
         }
         if self.picture.is_none() {
@@ -281,7 +282,9 @@ impl Posterise {
         let made = match self.made.answer() {
             Some(Ok(made)) => made,
             Some(Err(problem)) => {
-                ui.label(RichText::new(format!("Error: {problem}")).color(palette.error));
+                ui.label(
+                    RichText::new(format!("Error: {}", visible(problem))).color(palette.error),
+                );
                 return;
             }
             None => {
@@ -326,7 +329,11 @@ impl Posterise {
         for warning in &made.warnings {
             ui.horizontal_wrapped(|ui| {
                 icons::show(ui, Grade::Warning, palette.warning);
-                ui.label(RichText::new(warning).small().color(palette.warning));
+                ui.label(
+                    RichText::new(visible(warning))
+                        .small()
+                        .color(palette.warning),
+                );
             });
         }
     }

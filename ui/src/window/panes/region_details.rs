@@ -1,9 +1,12 @@
 //! What one region of a jacquard is called, where its weave begins, and into which other
 //! it goes.
 
+use std::borrow::Cow;
+
 use egui::{ComboBox, DragValue, TextEdit};
 use pickglass::design::{Region, Regions, Srgb};
 use pickglass::edit::Edit;
+use pickglass::text::visible;
 
 use super::dragging::Dragging;
 use super::swatches;
@@ -102,7 +105,7 @@ impl RegionDetails {
                     .prefix(format!("{name} "));
                 let field = ui.add(field);
                 *value = shown.saturating_sub(1);
-                let spoken = format!("First {name} of the weave of {}", known.name);
+                let spoken = format!("First {name} of the weave of {}", visible(&known.name));
                 field.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &spoken)
                 });
@@ -133,7 +136,7 @@ impl RegionDetails {
         }
         let name = |number: u16| {
             let region = regions.palette().get(usize::from(number));
-            region.map_or("", |region| region.name.as_str())
+            region.map_or(Cow::Borrowed(""), |region| visible(&region.name))
         };
         ui.horizontal(|ui| {
             let label = ui.label("Join with");

@@ -7,6 +7,7 @@ use pickglass::design::{
     Design, Fill, Region, RegionYarns, Regions, Structure, YarnId, region_colour,
 };
 use pickglass::edit::{Document, Edit};
+use pickglass::text::visible;
 
 use super::columns;
 use super::later::Later;
@@ -95,7 +96,7 @@ impl RegionList {
         let name = regions
             .palette()
             .get(usize::from(*number))
-            .map(|region| region.name.clone());
+            .map(|region| visible(&region.name).into_owned());
         let region = *number;
         match picker.show(ui.ctx(), &name.unwrap_or_default()) {
             Picked::Nothing => {}
@@ -116,7 +117,7 @@ impl RegionList {
         region: &Region,
         actions: &mut Vec<Action>,
     ) {
-        let name = region.name.clone();
+        let name = visible(&region.name).into_owned();
         let mut focused = false;
         let row = ui.horizontal(|ui| {
             let colour = region_colour(usize::from(number), region);
@@ -206,7 +207,7 @@ fn yarns_ui(
     region: &Region,
     actions: &mut Vec<Action>,
 ) {
-    let name_of = |yarn: YarnId| design.yarn(yarn).name.as_str();
+    let name_of = |yarn: YarnId| visible(&design.yarn(yarn).name);
     let told = match region.yarns {
         None => "design's yarns".to_owned(),
         Some(own) => format!("{} × {}", name_of(own.warp), name_of(own.weft)),
@@ -255,7 +256,7 @@ fn yarns_ui(
             });
         }
     });
-    let spoken = format!("Yarns of {}: {told}", region.name);
+    let spoken = format!("Yarns of {}: {told}", visible(&region.name));
     (menu.response)
         .on_hover_text("Yarns of its own change along their threads: preview only")
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));

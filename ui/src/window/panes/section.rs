@@ -3,6 +3,7 @@
 use egui::{RichText, Sense, Shape, Stroke, pos2, vec2};
 use pickglass::design::{Srgb, YarnId};
 use pickglass::edit::Document;
+use pickglass::text::visible;
 use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
 
 use crate::command_table::DraftLayout;
@@ -171,7 +172,7 @@ fn draw(ui: &mut egui::Ui, document: &Document, cut: &CrossSection, along_pick: 
         let line = side.iter().map(|point| at(point.x, point.y)).collect();
         painter.add(Shape::line(line, edge));
     }
-    let yarn = &document.design().yarn(cut.yarn).name;
+    let yarn = visible(&document.design().yarn(cut.yarn).name);
     ui.label(
         RichText::new(format!("{spoken} · {yarn}"))
             .small()

@@ -6,6 +6,7 @@ use egui::{DragValue, RichText};
 use pickglass::design::checks::{Interlacing, reed, take_up};
 use pickglass::design::{Density, Sett};
 use pickglass::edit::{Document, Edit};
+use pickglass::limits::SETT_PER_CM;
 
 use super::later::Later;
 use crate::tokens::{self, Palette};
@@ -92,7 +93,7 @@ impl SettPane {
                     let mut number = typed[which] * scale;
                     let field = DragValue::new(&mut number)
                         .speed(0.05)
-                        .range(0.5..=400.0)
+                        .range(SETT_PER_CM.start() * scale..=SETT_PER_CM.end() * scale)
                         .max_decimals(2)
                         .suffix(format!(" {unit}"));
                     if ui.add(field).labelled_by(label.id).changed() {

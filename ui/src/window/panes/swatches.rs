@@ -2,6 +2,7 @@
 
 use egui::{Response, Sense, Stroke, vec2};
 use pickglass::design::Srgb;
+use pickglass::text::visible;
 
 use crate::tokens::{self, Palette};
 use crate::window::focus;
@@ -20,7 +21,7 @@ pub fn field(ui: &mut egui::Ui, colour: Srgb, name: &str) -> Response {
     if response.has_focus() {
         focus::ring(ui.painter(), rect, &Palette::current(ui));
     }
-    let spoken = format!("{name}, {colour}");
+    let spoken = visible(&format!("{name}, {colour}")).into_owned();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &spoken));
     response
 }
@@ -30,7 +31,7 @@ pub fn button(ui: &mut egui::Ui, colour: &mut Srgb, name: &str) -> Response {
     let mut bytes = [colour.0, colour.1, colour.2];
     let response = ui.color_edit_button_srgb(&mut bytes);
     *colour = Srgb(bytes[0], bytes[1], bytes[2]);
-    let spoken = format!("Colour of {name}");
+    let spoken = visible(&format!("Colour of {name}")).into_owned();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, &spoken));
     response
 }

@@ -7,6 +7,7 @@ use egui::{DragValue, RichText, ScrollArea, TextEdit};
 use pickglass::design::checks::{Interlacing, YarnNeed, take_up, yarn_needs};
 use pickglass::design::{CountUnit, Design, Family, Yarn, YarnId, stripes};
 use pickglass::edit::{Direction, Document, Edit};
+use pickglass::text::visible;
 
 use super::dragging::Dragging;
 use super::later::Later;
@@ -124,7 +125,9 @@ impl Yarns {
                 set(id, changed, actions);
             }
             let open = self.open == Some(index);
-            let name = columns::cell(ui, column, |ui| ui.selectable_label(open, &yarn.name));
+            let name = columns::cell(ui, column, |ui| {
+                ui.selectable_label(open, visible(&yarn.name))
+            });
             let name = name.on_hover_text("Where it lies shows in the draft; click for more");
             focused = name.has_focus() || colour.has_focus();
             if name.clicked() {
@@ -271,7 +274,7 @@ impl Yarns {
             if self.with >= count || self.with == id.0 {
                 self.with = if id.0 == 0 { 1 } else { 0 };
             }
-            let name = |yarn: u16| design.yarn(YarnId(yarn)).name.clone();
+            let name = |yarn: u16| visible(&design.yarn(YarnId(yarn)).name);
             let label = ui.label("with");
             let others = egui::ComboBox::from_id_salt(("with", id.0));
             let shown = others.selected_text(name(self.with)).show_ui(ui, |ui| {

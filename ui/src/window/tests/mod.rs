@@ -2,6 +2,7 @@
 //! on a software adapter.
 
 mod colours;
+mod drafts;
 mod files;
 mod flow;
 mod hard;
