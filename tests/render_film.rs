@@ -10,8 +10,8 @@ use pickglass::formats::png::{self, Depth, Metadata, Picture};
 use pickglass::job::Job;
 use pickglass::render::error::DARK;
 use pickglass::render::{
-    Backing, Bounds, Collision, Counters, Dome, Film, LightRig, PRESET_NAMES, Pixel, Random, Ray,
-    RenderSettings, Sample, Scatterer, Sky, Tone, View, order_histogram, render,
+    Backing, Bounds, Collision, Counters, Dome, Film, FirstHit, LightRig, PRESET_NAMES, Pixel,
+    Random, Ray, RenderSettings, Sample, Scatterer, Sky, Tone, View, order_histogram, render,
 };
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 use render_scenes::{lone_sun, shoot, silk_satin, wool_twill};
@@ -54,16 +54,28 @@ fn one_thread_and_two_give_the_same_bits_in_any_passes() {
 #[test]
 fn sums_keep_their_digits_after_a_million_samples() {
     let mut pixel = Pixel::default();
+    let first = FirstHit {
+        albedo: Vec3::new(0.1, 0.7, 0.3),
+        normal: Vec3::new(0.6, 0.0, 0.8),
+        depth: 123.4,
+        optics: 3,
+    };
     let sample = Sample {
         radiance: Vec3::new(0.1, 1000.0, 1e-6),
-        alpha: 1.0,
-        first: None,
+        alpha: 0.1,
+        first: Some(first),
     };
     for index in 0..1_000_000 {
         assert!(pixel.add(index, &sample));
     }
     assert_eq!(pixel.mean(), sample.radiance);
-    assert_eq!(pixel.alpha(), 1.0);
+    assert_eq!(pixel.alpha(), 0.1);
+    assert_eq!(pixel.albedo(), first.albedo);
+    assert!((pixel.normal() - first.normal).length() < 1e-6);
+    assert_eq!(pixel.depth(), first.depth);
+    // Negative control: a sum in 32 bits is off by more than a half per cent.
+    let short = (0..1_000_000).fold(0.0f32, |sum, _| sum + 0.1) / 1e6;
+    assert!((short / 0.1 - 1.0).abs() > 5e-3, "{short}");
     assert!(pixel.variance() < 1e-12 * pixel.luminance().powi(2));
 }
 
@@ -405,7 +417,7 @@ fn exr_gives_back_every_layer() {
     );
     // And as an environment.
     let environment = exr::read_environment(&path).expect("read");
-    assert!(LightRig::from_image("still", environment).is_ok());
+    assert!(LightRig::from_image("still", environment.image).is_ok());
     std::fs::write(&path, b"nonsense").expect("written");
     assert!(exr::read_environment(&path).is_err());
     assert!(exr::read_environment(&folder.path().join("none.exr")).is_err());

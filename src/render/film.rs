@@ -3,7 +3,7 @@
 //! Radiance is premultiplied by alpha. Luminance is summed in two halves (even and odd
 //! samples), so that the error estimate has an error estimate of its own.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::environment::luminance;
 
@@ -40,10 +40,10 @@ pub struct Pixel {
     luminance_squared: [f64; 2],
     counts: [u32; 2],
     hits: u32,
-    alpha: f32,
-    albedo: Vec3,
-    normal: Vec3,
-    depth: f32,
+    alpha: f64,
+    albedo: DVec3,
+    normal: DVec3,
+    depth: f64,
     /// Boyer and Moore's majority vote over the optics of first hits.
     optics: u32,
     votes: u32,
@@ -65,12 +65,12 @@ impl Pixel {
         self.luminance[half] += l;
         self.luminance_squared[half] += l * l;
         self.counts[half] += 1;
-        self.alpha += sample.alpha;
+        self.alpha += f64::from(sample.alpha);
         if let Some(first) = &sample.first {
             self.hits += 1;
-            self.albedo += first.albedo;
-            self.normal += first.normal;
-            self.depth += first.depth;
+            self.albedo += first.albedo.as_dvec3();
+            self.normal += first.normal.as_dvec3();
+            self.depth += f64::from(first.depth);
             if self.votes == 0 {
                 self.optics = first.optics;
             }
@@ -96,7 +96,7 @@ impl Pixel {
 
     /// Share of the pixel that is not background.
     pub fn alpha(&self) -> f32 {
-        self.alpha / self.samples().max(1) as f32
+        (self.alpha / f64::from(self.samples().max(1))) as f32
     }
 
     /// Mean luminance.
@@ -137,18 +137,18 @@ impl Pixel {
 
     /// Mean albedo of the first hits; 0 where there are none.
     pub fn albedo(&self) -> Vec3 {
-        self.albedo / self.hits.max(1) as f32
+        (self.albedo / f64::from(self.hits.max(1))).as_vec3()
     }
 
     /// Mean normal of the first hits, unit length; 0 where there are none.
     pub fn normal(&self) -> Vec3 {
-        self.normal.normalize_or_zero()
+        self.normal.normalize_or_zero().as_vec3()
     }
 
     /// Mean distance of the first hits, mm; infinite where there are none.
     pub fn depth(&self) -> f32 {
         if self.hits > 0 {
-            self.depth / self.hits as f32
+            (self.depth / f64::from(self.hits)) as f32
         } else {
             f32::INFINITY
         }

@@ -3,12 +3,13 @@
 //! Every rig is scaled so that a white diffuser that faces up has radiance 1, that is,
 //! receives an irradiance of π. White is D65 = (1, 1, 1) in linear sRGB.
 
-use glam::{Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use super::environment::{Dome, EnvironmentImage, luminance};
+use super::environment::{Dome, luminance};
+use super::environment_image::EnvironmentImage;
 
 /// A far, small light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +57,8 @@ pub struct LightRig {
     pub suns: Vec<Sun>,
     /// Light from around.
     pub sky: Sky,
+    /// What was remarked on when its file was read, one line each.
+    pub warnings: Vec<String>,
     /// Whether x and z are negated between the sky and the cloth.
     turned_over: bool,
 }
@@ -223,20 +226,29 @@ impl LightRig {
             name: name.to_owned(),
             suns,
             sky,
+            warnings: Vec::new(),
             turned_over: false,
         })
     }
 
     /// A rig of one environment picture, scaled like every rig.
     pub fn from_image(name: &str, image: EnvironmentImage) -> Result<Self, LightError> {
-        let k = PI / luminance(image.irradiance_up());
+        let up = image.irradiance_up();
+        let k = std::f64::consts::PI / up.dot(DVec3::new(0.2126, 0.7152, 0.0722));
         if !(k > 0.0 && k.is_finite()) {
             return Err(LightError::NoLight(name.to_owned()));
         }
+        let image = image.scaled(k);
+        let replaced = image.replaced().to_string();
+        let warnings = match replaced.is_empty() {
+            true => Vec::new(),
+            false => vec![format!("{name}: {replaced}")],
+        };
         Ok(Self {
             name: name.to_owned(),
             suns: Vec::new(),
-            sky: Sky::Image(Arc::new(image.scaled(k))),
+            sky: Sky::Image(Arc::new(image)),
+            warnings,
             turned_over: false,
         })
     }
@@ -247,6 +259,7 @@ impl LightRig {
             name: name.to_owned(),
             suns,
             sky,
+            warnings: Vec::new(),
             turned_over: false,
         }
     }

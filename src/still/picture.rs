@@ -127,7 +127,10 @@ pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, Still
         LightChoice::Preset(name) => LightRig::preset(name)?,
         LightChoice::Sun(heading) => LightRig::sun(heading.azimuth, heading.elevation)?,
         LightChoice::Environment(path) => {
-            LightRig::from_image(&path.display().to_string(), exr::read_environment(path)?)?
+            let read = exr::read_environment(path)?;
+            let mut rig = LightRig::from_image(&path.display().to_string(), read.image)?;
+            rig.warnings.extend(read.warnings);
+            rig
         }
     };
     Ok(if view.turns_over() {
@@ -330,7 +333,7 @@ impl Shot<'_> {
             effects,
             level: 0,
             light_error: Some(0.0),
-            warnings: Vec::new(),
+            warnings: self.lights.warnings.clone(),
         };
         Still {
             report,

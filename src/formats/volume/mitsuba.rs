@@ -57,8 +57,7 @@ pub fn scene(path: &Path, frame: &Frame, scene: &Scene) -> Result<Vec<Attachment
                 (x as f32 + 0.5) / columns as f32,
                 (y as f32 + 0.5) / SKY_ROWS as f32,
             );
-            // Seen from inside, Mitsuba's pictures run the other way round.
-            radiance(EnvironmentImage::direction(1.0 - u, v))
+            radiance(EnvironmentImage::direction(u, v))
         })?;
         files.push(Attachment {
             path: sky_path,

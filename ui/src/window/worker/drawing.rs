@@ -8,7 +8,7 @@ use pickglass::design::WeavePattern;
 use pickglass::job::Job;
 use pickglass::still::{
     FirstSight, PreparedCloth, SightTables, Sighted, Standing, StillError, StillRequest, Stop,
-    place_on,
+    place_on, render,
 };
 
 use super::{Aim, Desk, Fibres, LONGEST, Picture, PreviewRequest};

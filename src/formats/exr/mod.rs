@@ -3,7 +3,13 @@
 //! A still is one part of 32-bit channels, losslessly compressed: `R G B A` (linear
 //! sRGB, premultiplied, never denoised), `albedo.R/G/B`, `normal.X/Y/Z` (cloth space),
 //! `depth.Z` (mm), `yarn.ID` (unsigned; 4294967295 = nothing) and `variance.Y` (of the
-//! pixel's mean luminance).
+//! pixel's mean luminance). Films of equal runs are files of equal bytes. `environment`
+//! reads the light of a picture, `header` puts a header's attributes in order.
+
+mod environment;
+mod header;
+
+pub use environment::{Environment, FIELDS, read_environment};
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -11,12 +17,13 @@ use std::path::{Path, PathBuf};
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, Layer,
-    LayerAttributes, LineOrder, ReadChannels, ReadLayers, SpecificChannels, WritableImage,
+    LayerAttributes, LineOrder, SpecificChannels, WritableImage,
 };
 use glam::Vec3;
 
 use super::atomic;
-use crate::render::{EnvironmentImage, Film};
+use crate::memory::TooMuch;
+use crate::render::Film;
 
 /// Channel value of `yarn.ID` where nothing was met.
 pub const NO_YARN: u32 = u32::MAX;
@@ -30,30 +37,38 @@ pub enum ExrError {
     /// The codec refused.
     #[error("exr: {0}; check that the file is a complete OpenEXR picture")]
     Codec(#[from] exr::error::Error),
-    /// A file could not be read or written.
-    #[error("{path}: {source}; check the path and the space left", path = path.display())]
+    /// A file could not be read.
+    #[error("{path}: {source}; check the path and that you may read it", path = path.display())]
     File {
         /// Where.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
     },
-    /// No colour in it.
-    #[error("{path}: no R, G and B channels: save the environment as an RGB picture", path = path.display())]
-    NoColour {
+    /// A file that is no sound OpenEXR picture.
+    #[error(
+        "{path}: {problem}; check that the file is a complete OpenEXR picture",
+        path = path.display()
+    )]
+    Damaged {
         /// Where.
         path: PathBuf,
+        /// What is wrong.
+        problem: String,
     },
-    /// Too large for an environment.
-    #[error("{path}: {width}x{height} is more than 64 megapixels: scale the environment down", path = path.display())]
-    TooLarge {
+    /// A picture that is no environment.
+    #[error("{path}: {problem}; {remedy}", path = path.display())]
+    Unsuitable {
         /// Where.
         path: PathBuf,
-        /// Pixels across.
-        width: usize,
-        /// Pixels down.
-        height: usize,
+        /// What is wrong.
+        problem: String,
+        /// What to do about it.
+        remedy: &'static str,
     },
+    /// A picture that takes more memory than there is.
+    #[error(transparent)]
+    Memory(#[from] TooMuch),
 }
 
 /// Encodes a film into the bytes of an EXR file. `texts` become string attributes;
@@ -92,7 +107,7 @@ pub fn encode(
     image.attributes = ImageAttributes::with_size(size);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes)?;
-    Ok(bytes.into_inner())
+    Ok(header::in_order(bytes.into_inner()))
 }
 
 /// Encodes a linear RGB picture of `width`×`height` pixels, top row first, into the bytes
@@ -117,7 +132,7 @@ pub fn encode_rgb(
     );
     let mut bytes = Cursor::new(Vec::new());
     Image::from_layer(layer).write().to_buffered(&mut bytes)?;
-    Ok(bytes.into_inner())
+    Ok(header::in_order(bytes.into_inner()))
 }
 
 /// Writes a film as an EXR file, whole or not at all.
@@ -156,51 +171,4 @@ fn channels(film: &Film) -> AnyChannels<FlatSamples> {
         FlatSamples::U32(yarns.collect()),
     ));
     AnyChannels::sort(list.into_iter().collect())
-}
-
-/// Reads an equirectangular environment: the first part that has R, G and B.
-pub fn read_environment(path: &Path) -> Result<EnvironmentImage, ExrError> {
-    let bytes = std::fs::read(path).map_err(|source| ExrError::File {
-        path: path.to_owned(),
-        source,
-    })?;
-    // The size first, before its memory is asked for.
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false)?;
-    for header in &meta.headers {
-        let (width, height) = (header.layer_size.x(), header.layer_size.y());
-        if width.saturating_mul(height) > 64 << 20 {
-            return Err(ExrError::TooLarge {
-                path: path.to_owned(),
-                width,
-                height,
-            });
-        }
-    }
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(&bytes))?;
-    for layer in &image.layer_data {
-        let find = |name: &str| {
-            let mut list = layer.channel_data.list.iter();
-            list.find(|c| c.name.eq_case_insensitive(name))
-                .map(|c| c.sample_data.values_as_f32().collect::<Vec<f32>>())
-        };
-        if let (Some(r), Some(g), Some(b)) = (find("R"), find("G"), find("B")) {
-            let pixels = r.iter().zip(&g).zip(&b);
-            let pixels = pixels.map(|((&r, &g), &b)| Vec3::new(r, g, b)).collect();
-            let size = layer.size;
-            return EnvironmentImage::new(size.x(), size.y(), pixels).map_err(|_| {
-                ExrError::NoColour {
-                    path: path.to_owned(),
-                }
-            });
-        }
-    }
-    Err(ExrError::NoColour {
-        path: path.to_owned(),
-    })
 }
