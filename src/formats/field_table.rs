@@ -49,5 +49,9 @@ pub struct Table {
 
 /// The tables of all readers.
 pub fn tables() -> Vec<Table> {
-    Vec::new()
+    vec![
+        super::volume::VOL_FIELDS,
+        super::volume::NRRD_FIELDS,
+        super::volume::META_IMAGE_FIELDS,
+    ]
 }

@@ -1,8 +1,11 @@
 //! Who walks which table.
 
-use super::Walker;
+use crate::Walker;
+
+#[path = "volumes.rs"]
+mod volumes;
 
 /// One walker a format.
 pub fn walkers() -> Vec<Walker> {
-    Vec::new()
+    volumes::walkers().into()
 }
