@@ -1,20 +1,29 @@
 //! Dense voxel grids that can be traced: nearest or stochastic one-tap lookup, majorant
-//! bricks of 4³ voxels with a level of empty-space blocks (16³ voxels) above.
+//! bricks of 4³ voxels with a level of empty-space blocks (16³ voxels) above. Bricks in
+//! which a few voxels are far denser than the rest have a majorant for each voxel, so that
+//! a single one does not cost every ray that passes near it.
 //!
 //! Voxels are stored brick by brick, 8 bytes each (extinction as a share of the brick's
 //! largest, two components of the direction, optics), so that a short flight touches half
 //! a kilobyte; bricks without matter are not stored.
 
 pub mod source;
+mod walk;
 
 use glam::{IVec3, Mat3, UVec3, Vec3};
+use rayon::prelude::*;
 
-use crate::render::{Bounds, MajorantWalk, Medium, Ray, Stretch, Voxel};
+use crate::render::{Bounds, Medium, Ray, Voxel};
+
+pub use walk::GridWalk;
 
 /// Voxels along the edge of a majorant brick.
 const BRICK: i32 = 4;
 /// Bricks along the edge of an empty-space block.
 const BLOCK: i32 = 4;
+/// Tentative collisions on the way through a brick above which it is worth walking voxel by
+/// voxel, and how many times denser than the mean of its voxels the densest then is.
+const RUGGED: [f32; 2] = [16.0, 4.0];
 /// Voxels in a brick.
 const BRICK_VOXELS: usize = (BRICK * BRICK * BRICK) as usize;
 
@@ -81,7 +90,7 @@ pub enum VolumeError {
     #[error("volume of {0}x{1}x{2} voxels is too large: choose a smaller region or coarser voxels")]
     TooLarge(u32, u32, u32),
     /// Bounds without volume.
-    #[error("volume bounds {0:?}..{1:?} must be finite and ascend on every axis")]
+    #[error("a volume from {} to {}: its corners must be finite and ascend on every axis", corner(*.0), corner(*.1))]
     Bounds(Vec3, Vec3),
     /// More optics than a voxel can name.
     #[error("a volume of {0} optics: merge colours until there are at most 32767")]
@@ -89,6 +98,11 @@ pub enum VolumeError {
     /// No optics at all.
     #[error("a volume needs at least one entry of optics")]
     NoOptics,
+}
+
+/// A place for people: its coordinates in mm.
+pub(crate) fn corner(place: Vec3) -> String {
+    format!("({}, {}, {}) mm", place.x, place.y, place.z)
 }
 
 /// One stored voxel: 8 bytes.
@@ -127,6 +141,9 @@ pub struct DenseGrid {
     /// Extinction of one unit in each brick.
     scales: Vec<f32>,
     majorants: Vec<f32>,
+    /// Where the majorants of a brick's voxels are in `fine`, or [`NOT_STORED`].
+    fine_places: Vec<u32>,
+    fine: Vec<[f32; BRICK_VOXELS]>,
     blocks: IVec3,
     /// Whether any brick of the block has matter.
     occupied: Vec<bool>,
@@ -213,6 +230,8 @@ impl DenseGrid {
             places,
             scales,
             majorants: Vec::new(),
+            fine_places: Vec::new(),
+            fine: Vec::new(),
             blocks,
             occupied: Vec::new(),
             mended,
@@ -220,6 +239,15 @@ impl DenseGrid {
         };
         grid.build_majorants();
         Ok(grid)
+    }
+
+    /// Bytes of a grid of `size` voxels, of which so many bricks of 4³ have matter.
+    pub fn bytes(size: UVec3, filled: u64) -> u64 {
+        let brick = |side: u32| u64::from(side.div_ceil(BRICK as u32));
+        let bricks = size.to_array().map(brick).into_iter().product::<u64>();
+        // Places, scales, majorants and where finer ones are; and the latter while they are made.
+        let around = 4 * size_of::<f32>() as u64 + size_of::<usize>() as u64;
+        filled * size_of::<[Packed; BRICK_VOXELS]>() as u64 + bricks * around
     }
 
     /// Voxels along each axis.
@@ -254,12 +282,8 @@ impl DenseGrid {
     #[inline]
     fn at(&self, cell: IVec3) -> Voxel {
         let brick = index(self.bricks, cell >> 2);
-        let inside = cell & 3;
         match self.voxels.get(self.places[brick] as usize) {
-            Some(voxels) => {
-                let number = ((inside.z << 4) | (inside.y << 2) | inside.x) as usize;
-                self.unpack(voxels[number % BRICK_VOXELS], self.scales[brick])
-            }
+            Some(voxels) => self.unpack(voxels[inside(cell)], self.scales[brick]),
             None => Voxel::EMPTY,
         }
     }
@@ -276,17 +300,40 @@ impl DenseGrid {
             .map(|scale| scale * f32::from(u16::MAX))
             .collect();
         let brick_index = |b: IVec3| index(self.bricks, b);
+        let numbered = (0..largest.len()).into_par_iter();
         self.majorants = match self.taps {
             Taps::Nearest => largest,
-            // A tap may land one voxel outside the brick: bound its neighbours too.
-            Taps::StochasticTrilinear => cells(self.bricks)
-                .map(|brick| {
+            // A tap may land one voxel outside the brick.
+            Taps::StochasticTrilinear => numbered
+                .map(|number| {
+                    let brick = cell_of(self.bricks, number);
                     let low = (brick - 1).max(IVec3::ZERO);
                     let high = (brick + 1).min(self.bricks - 1);
-                    box_cells(low, high).fold(0.0, |top: f32, b| top.max(largest[brick_index(b)]))
+                    let around = box_cells(low, high)
+                        .fold(0.0, |top: f32, b| top.max(largest[brick_index(b)]));
+                    // Looking closer pays where the neighbours are much denser.
+                    if around <= 1.5 * largest[number] {
+                        return around;
+                    }
+                    self.densest_tap(brick * BRICK, brick * BRICK + BRICK - 1)
                 })
                 .collect(),
         };
+        let across = self.scale.max_element().recip() * BRICK as f32;
+        let fine: Vec<Option<Box<[f32; BRICK_VOXELS]>>> = (0..self.majorants.len())
+            .into_par_iter()
+            .map(|number| self.fine_majorants(number, across))
+            .collect();
+        self.fine_places = Vec::with_capacity(fine.len());
+        for majorants in fine {
+            self.fine_places.push(match majorants {
+                Some(majorants) => {
+                    self.fine.push(*majorants);
+                    self.fine.len() as u32 - 1
+                }
+                None => NOT_STORED,
+            });
+        }
         self.occupied = cells(self.blocks)
             .map(|block| {
                 let low = block * BLOCK;
@@ -294,6 +341,39 @@ impl DenseGrid {
                 box_cells(low, high).any(|b| self.majorants[brick_index(b)] > 0.0)
             })
             .collect();
+    }
+
+    /// The largest extinction that a lookup between two voxels, both included, can find.
+    fn densest_tap(&self, low: IVec3, high: IVec3) -> f32 {
+        let reach = match self.taps {
+            Taps::Nearest => 0,
+            Taps::StochasticTrilinear => 1,
+        };
+        let low = (low - reach).max(IVec3::ZERO);
+        let high = (high + reach).min(self.size - 1);
+        box_cells(low, high).fold(0.0, |top: f32, cell| top.max(self.at(cell).sigma))
+    }
+
+    /// Majorants of the voxels of a brick that is `across` mm wide, where it is worth having
+    /// them.
+    fn fine_majorants(&self, number: usize, across: f32) -> Option<Box<[f32; BRICK_VOXELS]>> {
+        let majorant = self.majorants[number];
+        if !(majorant * across > RUGGED[0]) {
+            return None;
+        }
+        let low = cell_of(self.bricks, number) * BRICK;
+        let mut fine = Box::new([0.0f32; BRICK_VOXELS]);
+        for (majorant, inside) in fine.iter_mut().zip(cells(IVec3::splat(BRICK))) {
+            let cell = low + inside;
+            if cell.cmplt(self.size).all() {
+                *majorant = self.densest_tap(cell, cell);
+            }
+        }
+        let mean = fine
+            .iter()
+            .map(|sigma| sigma / BRICK_VOXELS as f32)
+            .sum::<f32>();
+        (mean * RUGGED[1] < majorant).then_some(fine)
     }
 
     #[inline(always)]
@@ -386,6 +466,23 @@ fn index(size: IVec3, cell: IVec3) -> usize {
     ((cell.z as usize * size.y as usize) + cell.y as usize) * size.x as usize + cell.x as usize
 }
 
+/// A cell's number in its brick.
+#[inline(always)]
+fn inside(cell: IVec3) -> usize {
+    let inside = cell & 3;
+    ((inside.z << 4) | (inside.y << 2) | inside.x) as usize % BRICK_VOXELS
+}
+
+/// The cell of a number that [`index`] gives.
+fn cell_of(size: IVec3, number: usize) -> IVec3 {
+    let (nx, ny) = (size.x as usize, size.y as usize);
+    IVec3::new(
+        (number % nx) as i32,
+        (number / nx % ny) as i32,
+        (number / nx / ny) as i32,
+    )
+}
+
 /// All cells of a grid, x fastest.
 fn cells(size: IVec3) -> impl Iterator<Item = IVec3> {
     box_cells(IVec3::ZERO, size - 1)
@@ -413,193 +510,6 @@ impl Medium for DenseGrid {
     fn albedo(&self, optics: u32) -> Vec3 {
         self.optics(optics).albedo
     }
-}
-
-/// A walk through the bricks of a [`DenseGrid`]: a 3-D DDA (Amanatides and Woo 1987)
-/// whose exit distances are computed from whole brick numbers at every step, so that
-/// errors do not add up, and whose bricks only ever advance, so that it ends.
-#[derive(Debug)]
-pub struct GridWalk<'g> {
-    grid: &'g DenseGrid,
-    /// Origin and direction in voxels.
-    origin: Vec3,
-    direction: Vec3,
-    /// Distance at which the ray crosses the plane `x = k` is `k·inverse + bias`; +∞ on
-    /// axes along which it does not move.
-    inverse: Vec3,
-    bias: Vec3,
-    /// 1 where the ray ascends (the far side of a cell), else 0.
-    far: IVec3,
-    /// The brick to be visited next.
-    next: IVec3,
-    /// The first voxel of the current stretch's brick, where its voxels are stored, and
-    /// their scale.
-    low: IVec3,
-    place: u32,
-    scale: f32,
-    t: f32,
-    end: f32,
-}
-
-impl<'g> GridWalk<'g> {
-    #[inline]
-    fn new(grid: &'g DenseGrid, ray: &Ray, t_max: f32) -> Self {
-        let origin = (ray.origin - grid.bounds.min) * grid.scale;
-        let direction = ray.direction * grid.scale;
-        let moves = direction.abs().cmpgt(Vec3::splat(1e-12));
-        let inverse = Vec3::select(moves, direction.recip(), Vec3::ZERO);
-        let bias = Vec3::select(moves, -origin * inverse, Vec3::INFINITY);
-        let up = direction.cmpgt(Vec3::ZERO);
-        let far = IVec3::select(up, IVec3::ONE, IVec3::ZERO);
-        let top = grid.size.as_vec3();
-
-        // Clip to the box; an axis along which the ray stands still is in or out.
-        let still_outside = !moves & (origin.cmplt(Vec3::ZERO) | origin.cmpge(top));
-        let near_plane = Vec3::select(up, Vec3::ZERO, top);
-        let far_plane = Vec3::select(up, top, Vec3::ZERO);
-        let enter = Vec3::select(moves, near_plane * inverse + bias, Vec3::NEG_INFINITY);
-        let leave = far_plane * inverse + bias;
-        let start = enter.max_element().max(0.0);
-        let end = leave.min_element().min(t_max);
-        let inside = !still_outside.any() && start < end;
-        let entry = origin + direction * if inside { start } else { 0.0 };
-        let cell = IVec3::new(floor(entry.x), floor(entry.y), floor(entry.z));
-        let cell = cell.clamp(IVec3::ZERO, grid.size - 1);
-        let brick = cell >> 2;
-        Self {
-            grid,
-            origin,
-            direction,
-            inverse,
-            bias,
-            far,
-            next: brick,
-            low: IVec3::ZERO,
-            place: NOT_STORED,
-            scale: 0.0,
-            t: start,
-            end: if inside { end } else { f32::NEG_INFINITY },
-        }
-    }
-
-    /// Where the ray leaves a cell of `edge` voxels, and through which axis.
-    #[inline]
-    fn exit(&self, cell: IVec3, edge: i32) -> (f32, usize) {
-        let planes = ((cell + self.far) * edge).as_vec3() * self.inverse + self.bias;
-        if planes.x < planes.y {
-            if planes.x < planes.z {
-                (planes.x, 0)
-            } else {
-                (planes.z, 2)
-            }
-        } else if planes.y < planes.z {
-            (planes.y, 1)
-        } else {
-            (planes.z, 2)
-        }
-    }
-
-    /// Goes on to the next brick along an axis.
-    #[inline(always)]
-    fn advance(&mut self, axis: usize) {
-        let step = |k: usize, far: i32| if k == axis { 2 * far - 1 } else { 0 };
-        self.next.x += step(0, self.far.x);
-        self.next.y += step(1, self.far.y);
-        self.next.z += step(2, self.far.z);
-    }
-
-    /// The first brick behind an empty block; only ever onwards along the ray.
-    #[inline]
-    fn behind_block(&self, block: IVec3, axis: usize, t: f32) -> IVec3 {
-        let low = block * BLOCK;
-        let high = low + BLOCK - 1;
-        let point = self.origin + self.direction * t;
-        let guess = (point * (1.0 / BRICK as f32)).floor().as_ivec3();
-        let mut brick = guess.clamp(low, high);
-        // Rounding must not turn the walk back on the other axes.
-        let up = self.far.cmpeq(IVec3::ONE);
-        brick = IVec3::select(up, brick.max(self.next), brick.min(self.next));
-        brick[axis] = if self.far[axis] == 1 {
-            high[axis] + 1
-        } else {
-            low[axis] - 1
-        };
-        brick
-    }
-}
-
-impl MajorantWalk for GridWalk<'_> {
-    #[inline]
-    fn next_stretch(&mut self) -> Option<Stretch> {
-        while self.t < self.end {
-            let brick = self.next;
-            if brick.cmplt(IVec3::ZERO).any() || brick.cmpge(self.grid.bricks).any() {
-                return None;
-            }
-            let number = index(self.grid.bricks, brick);
-            let majorant = self.grid.majorants[number];
-            if majorant > 0.0 {
-                self.place = self.grid.places[number];
-                self.scale = self.grid.scales[number];
-                let (exit, axis) = self.exit(brick, BRICK);
-                let start = self.t;
-                let end = exit.max(start).min(self.end);
-                self.low = brick * BRICK;
-                self.advance(axis);
-                self.t = exit.max(start);
-                return Some(Stretch {
-                    start,
-                    end,
-                    majorant,
-                });
-            }
-            let block = brick >> 2;
-            if self.grid.occupied[index(self.grid.blocks, block)] {
-                let (exit, axis) = self.exit(brick, BRICK);
-                self.advance(axis);
-                self.t = exit.max(self.t);
-            } else {
-                let (exit, axis) = self.exit(block, BRICK * BLOCK);
-                self.t = exit.max(self.t);
-                self.next = self.behind_block(block, axis, self.t);
-            }
-        }
-        None
-    }
-
-    #[inline(always)]
-    fn voxel(&self, t: f32, tap: Vec3, _: f32) -> Voxel {
-        let point = self.origin + self.direction * t;
-        let grid = self.grid;
-        // Rounding may put the point just outside its brick, whose majorant holds here.
-        let low = self.low;
-        match grid.taps {
-            Taps::Nearest => {
-                let inside = |axis: usize| (floor(point[axis]) - low[axis]).clamp(0, BRICK - 1);
-                let number = ((inside(2) << 4) | (inside(1) << 2) | inside(0)) as usize;
-                match grid.voxels.get(self.place as usize) {
-                    Some(voxels) => grid.unpack(voxels[number % BRICK_VOXELS], self.scale),
-                    None => Voxel::EMPTY,
-                }
-            }
-            Taps::StochasticTrilinear => {
-                let shifted = point + tap - 0.5;
-                let cell = IVec3::new(floor(shifted.x), floor(shifted.y), floor(shifted.z))
-                    .clamp(low - 1, low + BRICK)
-                    .clamp(IVec3::ZERO, grid.size - 1);
-                grid.at(cell)
-            }
-        }
-    }
-}
-
-/// The whole number below `x`, for |x| < 2²¹; on a whole number, it or the one below.
-/// Anything else gives some number. Adding 1.5·2²³ rounds to the nearest whole number
-/// without a library call.
-#[inline(always)]
-fn floor(x: f32) -> i32 {
-    const SHIFT: f32 = 12_582_912.0;
-    ((x - 0.5) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }
 
 /// The SGGX matrix I − (1−α²)ttᵀ of a voxel, for formats that store matrices.

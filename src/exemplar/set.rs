@@ -67,7 +67,8 @@ pub fn quantise(size: f32) -> f32 {
 }
 
 /// The one grid that exemplars of all `pairs` at this spacing (mm) share. Each `level`
-/// above 0 halves the resolution.
+/// above 0 halves the resolution, until a block has one brick: what would be no coarser
+/// than a finer level is that level, and says so.
 ///
 /// # Errors
 /// When a recipe or the spacing is not usable.
@@ -96,6 +97,9 @@ pub fn common_grid(
         reach += 0.1 * pair.warp.diameter_mm.max(pair.weft.diameter_mm);
     }
     let (bx, by) = (side(pitch.x), side(pitch.y));
+    let is_same =
+        |finer: &u32| (voxels_along(pitch.x, *finer), voxels_along(pitch.y, *finer)) == (bx, by);
+    let level = (0..level).find(is_same).unwrap_or(level);
     let (vx, vy) = (pitch.x / bx as f32, pitch.y / by as f32);
     let vz = (vx * vy).sqrt();
     let depth = ((2.0 * reach / vz).ceil() as usize + 4).next_multiple_of(BRICK);

@@ -55,5 +55,8 @@ pub fn tables() -> Vec<Table> {
         super::wpo::FIELDS,
         super::dbw::FIELDS,
         super::jc5::FIELDS,
+        super::volume::VOL_FIELDS,
+        super::volume::NRRD_FIELDS,
+        super::volume::META_IMAGE_FIELDS,
     ]
 }

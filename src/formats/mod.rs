@@ -386,9 +386,21 @@ fn with_options(design: Design, name: &str, options: &LoadOptions) -> Result<Des
     })
 }
 
-/// What bytes are that are certainly no text.
+const NRRD_VOLUME: &str =
+    "an NRRD volume: pickglass still takes it, named .nrrd, or .nhdr with its voxels beside it";
+const META_IMAGE_VOLUME: &str =
+    "a MetaImage volume: pickglass still takes it, named .mha, or .mhd with its voxels beside it";
+
+/// What bytes are that are certainly no design.
 fn other_kind(bytes: &[u8]) -> Option<&'static str> {
-    let kinds: [(&[u8], &str); 6] = [
+    let kinds: [(&[u8], &str); 10] = [
+        (b"NRRD000", NRRD_VOLUME),
+        (b"ObjectType", META_IMAGE_VOLUME),
+        (b"NDims", META_IMAGE_VOLUME),
+        (
+            b"VOL\x03",
+            "a Mitsuba volume: pickglass still takes it, named .vol",
+        ),
         (b"PK\x03\x04", "an archive"),
         (b"%PDF", "a PDF"),
         (

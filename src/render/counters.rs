@@ -17,7 +17,7 @@ pub struct Counters {
     /// Lookups whose extinction was above the majorant of their stretch; anything but 0
     /// makes the picture wrong.
     pub majorant_violations: u64,
-    /// Walks ended by [`super::track::STEP_CAP`].
+    /// Walks ended by [`super::track::STEP_CAP`]; they count as absorbed.
     pub capped_walks: u64,
     /// Walks not begun because the ray was not finite or its direction not of length 1.
     pub invalid_rays: u64,
@@ -35,6 +35,29 @@ impl AddAssign for Counters {
         self.capped_walks += other.capped_walks;
         self.invalid_rays += other.invalid_rays;
         self.invalid_samples += other.invalid_samples;
+    }
+}
+
+impl Counters {
+    /// What was given up or left out, one line each: the picture is not all that was asked
+    /// for where there is any.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.capped_walks > 0 {
+            warnings.push(format!(
+                "{} walks of light were given up after {} steps and count as absorbed: the \
+                 extinction is too large somewhere; give it in 1/mm",
+                self.capped_walks,
+                super::track::STEP_CAP
+            ));
+        }
+        if self.invalid_rays > 0 {
+            warnings.push(format!(
+                "{} rays had no place or direction and were left out",
+                self.invalid_rays
+            ));
+        }
+        warnings
     }
 }
 

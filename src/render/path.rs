@@ -205,6 +205,12 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                 f32::INFINITY
             };
             let (point, vertex) = match self.scatterer.collide(&ray, sheet, random, counters) {
+                Some(hit) if hit.absorbed => {
+                    if order == 0 {
+                        sample.alpha = 1.0;
+                    }
+                    break;
+                }
                 Some(hit) => {
                     let albedo = tally.albedo(self.scatterer, hit.voxel.optics);
                     if order == 0 {

@@ -17,7 +17,7 @@ use super::sggx::Fibre;
 
 /// Tentative collisions after which a walk is given up and counted. A walk through a
 /// cloth needs tens, a grazing one hundreds; 2¹⁴ is reached only where the extinction is
-/// absurd.
+/// absurd. Where it is, hardly any light passes: what is given up counts as absorbed.
 pub const STEP_CAP: u32 = 1 << 14;
 
 /// Where a flight ended.
@@ -27,6 +27,8 @@ pub struct Collision {
     pub t: f32,
     /// The medium there.
     pub voxel: Voxel,
+    /// The walk was given up there (see [`STEP_CAP`]): nothing is scattered.
+    pub absorbed: bool,
 }
 
 impl Voxel {
@@ -131,13 +133,21 @@ impl<M: Medium> Scatterer for M {
                     let area2 = area_squared(&voxel, ray.direction);
                     if accept * accept < share * share * area2 {
                         counters.lookups += u64::from(steps);
-                        return Some(Collision { t, voxel });
+                        return Some(Collision {
+                            t,
+                            voxel,
+                            absorbed: false,
+                        });
                     }
                 }
                 if steps >= STEP_CAP {
                     counters.capped_walks += 1;
                     counters.lookups += u64::from(steps);
-                    return None;
+                    return Some(Collision {
+                        t,
+                        voxel,
+                        absorbed: true,
+                    });
                 }
                 depth = free_path(flight);
             }
@@ -195,6 +205,7 @@ impl<M: Medium> Scatterer for M {
                 }
                 if steps >= STEP_CAP {
                     counters.capped_walks += 1;
+                    transmittance = 0.0;
                     break 'walk;
                 }
                 depth = free_path(flight);

@@ -5,33 +5,41 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::picture::{Pass, Shot, Still, Subject, camera_at, lights, settings};
-use super::{StillError, StillRequest};
+use super::{EffectBase, EffectChoice, StillError, StillRequest};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
 use crate::render::{Background, Bounds, Camera};
 use crate::volume::Taps;
 use crate::volume::source::Frame;
 
-/// Renders a `.vol`, `.nrrd` or `.mhd` through the same tracer as cloth, and says what was
-/// remarked on while reading it. `on_pass` sees the picture after every pass. Without a
-/// width in the request the picture is as wide as the volume.
+/// Renders a volume through the same tracer as cloth, and says what was remarked on while
+/// reading it. `on_pass` sees the picture after every pass. Without a width in the request
+/// the picture is as wide as the volume. `voxel_mm` is the edge of a voxel along x, where the
+/// file does not say it.
+///
+/// A point is the voxel that holds it, as in the scenes that go out with a volume; filtered
+/// where the request turns the effect `tap` on by name.
 ///
 /// # Errors
 /// When the volume cannot be read, the request is not usable or the job is cancelled.
 pub fn render_grid(
-    path: &Path,
+    (path, voxel_mm): (&Path, Option<f64>),
     request: &StillRequest,
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<(Still, Vec<String>), StillError> {
-    let (cloth, settings, mut effects) = settings(request)?;
+    let (_, settings, mut effects) = settings(request)?;
     let begun = Instant::now();
-    let taps = if cloth.tap {
+    let filtered = filtered(&request.effects);
+    let taps = if filtered {
         Taps::StochasticTrilinear
     } else {
         Taps::Nearest
     };
-    let file = volume::read(path, taps, job)?;
+    for (_, on) in effects.iter_mut().filter(|(name, _)| name == "tap") {
+        *on = filtered;
+    }
+    let file = volume::read_scaled(path, taps, voxel_mm, job)?;
     let reading = ("reading".to_owned(), begun.elapsed().as_secs_f64());
     // Only cloth has these.
     effects.retain(|(name, _)| ["shadows", "multiple", "sky", "tap"].contains(&name.as_str()));
@@ -48,6 +56,12 @@ pub fn render_grid(
         shot.develop(outcome, vec![reading], effects, subject),
         file.warnings,
     ))
+}
+
+/// Whether voxels are filtered: only where that is asked for.
+fn filtered(choice: &EffectChoice) -> bool {
+    let named = choice.changes.iter().rev().find(|(name, _)| name == "tap");
+    named.map_or(choice.base == EffectBase::All, |(_, on)| *on)
 }
 
 /// The camera of a request over a box: its middle and its width, unless the request says.

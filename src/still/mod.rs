@@ -41,6 +41,7 @@ use crate::exemplar::ExemplarError;
 use crate::formats::exr::ExrError;
 use crate::formats::png::PngError;
 use crate::formats::volume::VolumeFileError;
+use crate::formats::volume::mitsuba::SceneError;
 use crate::job::Cancelled;
 use crate::render::LightError;
 use crate::synthesis::SynthesisError;
@@ -78,6 +79,9 @@ pub enum StillError {
     /// The volume could not be read.
     #[error(transparent)]
     Volume(VolumeFileError),
+    /// A volume has no scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// The picture could not be written.
     #[error(transparent)]
     Png(#[from] PngError),

@@ -251,6 +251,7 @@ pub fn render(
         Subject::Design(Arc::clone(&prepared.design)),
     );
     still.report.level = cloth.level();
+    still.report.warnings.extend(prepared.check_level().err());
     still.report.light_error = cloth.light_error();
     Ok(still)
 }
@@ -330,10 +331,14 @@ impl Shot<'_> {
                 .map(|_| [outcome.error.low, outcome.error.high]),
             invalid_samples: outcome.counters.invalid_samples,
             majorant_violations: outcome.counters.majorant_violations,
+            capped_walks: outcome.counters.capped_walks,
+            invalid_rays: outcome.counters.invalid_rays,
             effects,
             level: 0,
             light_error: Some(0.0),
-            warnings: self.lights.warnings.clone(),
+            warnings: (self.lights.warnings.iter().cloned())
+                .chain(outcome.counters.warnings())
+                .collect(),
         };
         Still {
             report,
@@ -455,6 +460,13 @@ impl Still {
             ("Title", title),
             ("Design", hash),
             ("Settings", self.settings.clone()),
+            ("invalid_samples", self.report.invalid_samples.to_string()),
+            (
+                "majorant_violations",
+                self.report.majorant_violations.to_string(),
+            ),
+            ("capped_walks", self.report.capped_walks.to_string()),
+            ("invalid_rays", self.report.invalid_rays.to_string()),
         ]
         .map(|(key, text)| (key.to_owned(), text))
         .to_vec()

@@ -96,6 +96,21 @@ impl PreparedCloth {
         &self.cloth
     }
 
+    /// Why its level is not the one that was asked for, where that is so.
+    ///
+    /// # Errors
+    /// One line with the level that it has.
+    pub fn check_level(&self) -> Result<(), String> {
+        let (asked, level) = (self.settings.level, self.cloth.level());
+        if asked == level {
+            return Ok(());
+        }
+        Err(format!(
+            "level {asked} of these yarns and this sett is no coarser than level {level}: choose \
+             level {level}"
+        ))
+    }
+
     /// The design whose cloth it is.
     pub fn design(&self) -> &Arc<Design> {
         &self.design

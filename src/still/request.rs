@@ -156,6 +156,10 @@ pub struct StillReport {
     pub invalid_samples: u64,
     /// Lookups above their bound.
     pub majorant_violations: u64,
+    /// Walks given up, which count as absorbed.
+    pub capped_walks: u64,
+    /// Rays that were not walked because they had no place or direction.
+    pub invalid_rays: u64,
     /// Effects by name, and whether they were simulated.
     pub effects: Vec<(String, bool)>,
     /// The cloth's level; 0 of what is no cloth.

@@ -221,6 +221,8 @@ fn join(all: &mut StillReport, still: &Still, first: bool) {
     all.spp = all.spp.min(one.spp);
     all.invalid_samples += one.invalid_samples;
     all.majorant_violations += one.majorant_violations;
+    all.capped_walks += one.capped_walks;
+    all.invalid_rays += one.invalid_rays;
     for warning in &one.warnings {
         if !all.warnings.contains(warning) {
             all.warnings.push(warning.clone());

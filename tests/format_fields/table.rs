@@ -1,6 +1,9 @@
 //! Who walks which table.
 
-use super::Walker;
+use crate::Walker;
+
+#[path = "volumes.rs"]
+mod volumes;
 
 #[path = "drafts.rs"]
 mod drafts;
@@ -9,5 +12,6 @@ mod drafts;
 pub fn walkers() -> Vec<Walker> {
     let mut walkers = Vec::new();
     walkers.extend(drafts::walkers());
+    walkers.extend(volumes::walkers());
     walkers
 }

@@ -288,7 +288,7 @@ pub enum RendererArg {
 #[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
 pub struct StillArgs {
     /// A design (.ron), a draft, loom or image file, a preset's name or a volume (.vol, .nrrd,
-    /// .mhd)
+    /// .nhdr, .mhd, .mha)
     pub design: String,
     /// The picture to write, .png or .exr
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
@@ -311,6 +311,9 @@ pub struct StillArgs {
     /// Width of cloth the picture shows, in mm [default: the view's own]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
     pub mm: Option<f64>,
+    /// Edge of a voxel along x, in mm, of a volume whose file does not say it
+    #[arg(long, value_name = "MM", value_parser = values::positive)]
+    pub voxel: Option<f64>,
     /// A light's name, or an equirectangular environment (.exr)
     #[arg(long, value_name = "PRESET|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
     pub light: LightChoice,

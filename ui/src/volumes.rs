@@ -25,6 +25,7 @@ pub fn voxels<'c>(
     path: &Path,
     request: &StillRequest,
 ) -> anyhow::Result<(ClothWindow<'c>, Vec<Attachment>)> {
+    cloth.check_level().map_err(anyhow::Error::msg)?;
     let window = ClothWindow::new(cloth.cloth(), region, part, per_crossing)?;
     let attached = scene_beside(path, &window.frame(), request)?;
     Ok((window, attached))

@@ -51,3 +51,5 @@ mod case_19;
 mod case_20;
 #[path = "cases/case_20_limits.rs"]
 mod case_20_limits;
+#[path = "cases/volumes.rs"]
+mod volumes;

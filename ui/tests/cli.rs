@@ -225,6 +225,8 @@ fn a_still_is_written_and_reported() {
             "error",
             "invalid_samples",
             "majorant_violations",
+            "capped_walks",
+            "invalid_rays",
             "effects",
             "level",
             "light_error",

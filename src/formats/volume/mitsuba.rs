@@ -2,7 +2,7 @@
 //! an `.xml`, and a few lines of Python that render it.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
@@ -27,28 +27,68 @@ pub struct Scene<'s> {
     pub settings: &'s RenderSettings,
 }
 
+/// Why a volume has no scene.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// A name that a scene cannot say.
+    #[error("{}: its scene cannot name it: {why}; choose another name", path.display())]
+    Name {
+        /// The volume.
+        path: PathBuf,
+        /// What of the name.
+        why: &'static str,
+    },
+    /// The sky cannot be encoded.
+    #[error(transparent)]
+    Sky(#[from] ExrError),
+}
+
+/// A file's name as the scene says it, if it can.
+fn name_of(path: &Path) -> Result<String, SceneError> {
+    let refused = |why| SceneError::Name {
+        path: path.to_owned(),
+        why,
+    };
+    let name = path.file_name().unwrap_or_default().to_str();
+    let name = name.ok_or_else(|| refused("it is no Unicode"))?;
+    if name.contains('$') {
+        return Err(refused(
+            "Mitsuba takes what stands behind a $ for a parameter",
+        ));
+    }
+    let unsayable = |letter: char| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}');
+    if name.contains(unsayable) {
+        return Err(refused("it has characters that XML has not"));
+    }
+    Ok(name.to_owned())
+}
+
 /// The files that stand beside `NAME.vol`: `NAME.xml`, `NAME.py`, and `NAME.sky.exr` where
-/// the sky is not the same all round.
+/// the sky is not the same all round. The scene finds them and the volume beside itself,
+/// wherever it is loaded from.
 ///
 /// # Errors
-/// When the sky cannot be encoded.
-pub fn scene(path: &Path, frame: &Frame, scene: &Scene) -> Result<Vec<Attachment>, ExrError> {
-    let name = |path: &Path| {
-        path.file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned()
+/// When the sky cannot be encoded, or the scene cannot name the volume.
+pub fn scene(path: &Path, frame: &Frame, scene: &Scene) -> Result<Vec<Attachment>, SceneError> {
+    let (scene_path, sky_path) = (
+        path.with_extension("xml"),
+        beside(path, "sky").with_extension("exr"),
+    );
+    let names = Names {
+        sigma: name_of(path)?,
+        albedo: name_of(&beside(path, "albedo"))?,
+        sggx: name_of(&beside(path, "sggx"))?,
+        sky: name_of(&sky_path)?,
     };
-    let sky_path = beside(path, "sky").with_extension("exr");
     let sky = Surroundings::of(scene.lights);
     let mut files = vec![
         Attachment {
-            path: path.with_extension("xml"),
-            bytes: xml(&name(path), &name(&sky_path), frame, scene, &sky).into_bytes(),
+            bytes: xml(&names, frame, scene, &sky).into_bytes(),
+            path: scene_path.clone(),
         },
         Attachment {
             path: path.with_extension("py"),
-            bytes: python(&name(&path.with_extension("xml"))).into_bytes(),
+            bytes: python(&name_of(&scene_path)?).into_bytes(),
         },
     ];
     if let Surroundings::Picture { columns, radiance } = sky {
@@ -65,6 +105,14 @@ pub fn scene(path: &Path, frame: &Frame, scene: &Scene) -> Result<Vec<Attachment
         });
     }
     Ok(files)
+}
+
+/// The files that a scene names.
+struct Names {
+    sigma: String,
+    albedo: String,
+    sggx: String,
+    sky: String,
 }
 
 /// Light from around, as Mitsuba knows it.
@@ -105,7 +153,7 @@ fn rgb(v: Vec3) -> String {
     format!("{}, {}, {}", v.x, v.y, v.z)
 }
 
-fn xml(vol: &str, sky: &str, frame: &Frame, scene: &Scene, around: &Surroundings) -> String {
+fn xml(names: &Names, frame: &Frame, scene: &Scene, around: &Surroundings) -> String {
     let bounds = frame.bounds();
     let centre = (bounds.min + bounds.max) * 0.5;
     let half = (bounds.max - bounds.min) * 0.5;
@@ -114,8 +162,11 @@ fn xml(vol: &str, sky: &str, frame: &Frame, scene: &Scene, around: &Surroundings
          <!-- A window of cloth from Pickglass, for Mitsuba 3.5.2 (lengths in mm).\n\
          \x20    From 3.6.0 to 3.9.1 Mitsuba samples SGGX wrongly for oblique directions.\n\
          \x20    Approximated: suns of some width are points, a graded sky is a picture of 512\n\
-         \x20    rows, flyaway hairs are left out, and the cloth ends where the window does. -->\n\
-         <scene version=\"3.5.0\">\n  <default name=\"spp\" value=\"64\"/>\n",
+         \x20    rows, flyaway hairs are left out, and the cloth ends where the window does.\n\
+         \x20    Not filtered: a point is the voxel that holds it, here and where Pickglass\n\
+         \x20    renders the .vol. -->\n\
+         <scene version=\"3.5.0\">\n  <!-- Files are those beside this one. -->\n  \
+         <path value=\".\"/>\n  <default name=\"spp\" value=\"64\"/>\n",
     );
     // Writing to a string cannot fail.
     let _ = writeln!(
@@ -144,7 +195,7 @@ fn xml(vol: &str, sky: &str, frame: &Frame, scene: &Scene, around: &Surroundings
                     "  <emitter type=\"envmap\">\n    <string name=\"filename\" value=\"{}\"/>\n    \
                      <transform name=\"to_world\"><rotate x=\"1\" angle=\"90.05\"/></transform>\n  \
                      </emitter>",
-                    escaped(sky)
+                    escaped(&names.sky)
                 );
             }
         }
@@ -171,10 +222,10 @@ fn xml(vol: &str, sky: &str, frame: &Frame, scene: &Scene, around: &Surroundings
          <boolean name=\"has_spectral_extinction\" value=\"false\"/>",
         half.x, half.y, half.z, centre.x, centre.y, centre.z,
     );
-    text += &volume("sigma_t", vol, "      ");
-    text += &volume("albedo", &vol.replacen(".vol", ".albedo.vol", 1), "      ");
+    text += &volume("sigma_t", &names.sigma, "      ");
+    text += &volume("albedo", &names.albedo, "      ");
     text += "      <phase type=\"sggx\">\n";
-    text += &volume("S", &vol.replacen(".vol", ".sggx.vol", 1), "        ");
+    text += &volume("S", &names.sggx, "        ");
     text += "      </phase>\n    </medium>\n  </shape>\n</scene>\n";
     text
 }
@@ -226,6 +277,7 @@ fn sensor(camera: &Camera) -> String {
 }
 
 fn python(xml: &str) -> String {
+    let xml = python_text(xml);
     format!(
         "\"\"\"Renders the cloth beside this file: pip install mitsuba==3.5.2\"\"\"\n\
          import sys\nfrom pathlib import Path\n\nimport mitsuba as mi\n\n\
@@ -233,11 +285,27 @@ fn python(xml: &str) -> String {
          mi.set_variant(\"scalar_rgb\")\n\
          spp = sys.argv[1] if len(sys.argv) > 1 else \"64\"\n\
          here = Path(__file__).resolve()\n\
-         scene = mi.load_file(str(here.with_name({xml:?})), spp=spp)\n\
+         scene = mi.load_file(str(here.with_name({xml})), spp=spp)\n\
          image = mi.render(scene)\n\
          mi.util.write_bitmap(str(here.with_suffix(\".exr\")), image)\n\
          mi.util.write_bitmap(str(here.with_suffix(\".png\")), image)\n"
     )
+}
+
+/// Text as Python writes it, in ASCII.
+fn python_text(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for letter in text.chars() {
+        // Writing to a string cannot fail.
+        let _ = match (letter, u32::from(letter)) {
+            ('"' | '\\', _) => write!(quoted, "\\{letter}"),
+            (' '..='~', _) => write!(quoted, "{letter}"),
+            (_, code @ 0..=0xffff) => write!(quoted, "\\u{code:04x}"),
+            (_, code) => write!(quoted, "\\U{code:08x}"),
+        };
+    }
+    quoted.push('"');
+    quoted
 }
 
 /// Text as an attribute's value.
@@ -245,4 +313,28 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn python_reads_names_as_they_are() {
+        assert_eq!(python_text("a\"b\\c.xml"), r#""a\"b\\c.xml""#);
+        assert_eq!(
+            python_text("\u{200b}\u{e9}\u{1f9f5}"),
+            r#""\u200b\u00e9\U0001f9f5""#
+        );
+        assert_eq!(escaped("a<&\"b"), "a&lt;&amp;&quot;b");
+    }
+
+    #[test]
+    fn names_that_a_scene_cannot_say_are_refused() {
+        for name in ["a$spp.vol", "a\nb.vol", "a\u{1}.vol", "a\u{ffff}.vol"] {
+            let refused = name_of(Path::new(name));
+            assert!(refused.is_err(), "{name:?}");
+        }
+        assert!(name_of(Path::new("B \u{200b}&.VOL")).is_ok());
+    }
 }

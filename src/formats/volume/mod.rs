@@ -2,8 +2,8 @@
 //!
 //! [`plan`] says which files a window makes and how large they are; [`write()`] makes them,
 //! box by box, so that memory does not grow with the window, and puts them in place only
-//! when all are whole. [`read`] makes a grid of `.vol`, `.nrrd` and `.mhd`, which the
-//! tracer renders like any other medium. One file a format:
+//! when all are whole. [`read`] makes a grid of `.vol`, `.nrrd`, `.nhdr`, `.mhd` and `.mha`,
+//! which the tracer renders like any other medium. One file a format:
 //!
 //! | ending | files | channels |
 //! |---|---|---|
@@ -13,13 +13,16 @@
 //! | `.tif` | `NAME.tif`, `NAME.yarn.tif`, one page a layer | σ in 16 bits, yarn |
 //! | `.vdb` | one | density, direction, albedo, roughness, yarn |
 
+mod axes;
 mod dense;
 mod fields;
 mod meta_image;
 pub mod mitsuba;
 mod nrrd;
+mod nrrd_head;
 mod read;
 mod tiff_stack;
+mod units;
 mod vdb;
 mod vol;
 
@@ -29,10 +32,14 @@ use std::time::Instant;
 
 use super::atomic::{Pending, WriteError, folder_of};
 use crate::job::{Cancelled, Job};
+use crate::memory::TooMuch;
 use crate::volume::VolumeError;
 use crate::volume::source::{CellBox, SourceVoxel, VoxelSource};
 
-pub use read::{GridFile, read};
+pub use meta_image::FIELDS as META_IMAGE_FIELDS;
+pub use nrrd_head::FIELDS as NRRD_FIELDS;
+pub use read::{GridFile, read, read_scaled};
+pub use vol::FIELDS as VOL_FIELDS;
 
 /// The formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +57,7 @@ pub enum VolumeFormat {
 }
 
 impl VolumeFormat {
-    /// The format that a file's ending names.
+    /// The format in which a file of this ending is written.
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         Some(match ending.as_str() {
@@ -63,9 +70,14 @@ impl VolumeFormat {
         })
     }
 
-    /// Whether [`read`] can read it.
-    pub fn readable(self) -> bool {
-        matches!(self, Self::Vol | Self::Nrrd | Self::MetaImage)
+    /// The format of a volume that is opened, by its ending. A `.tif` is an image then.
+    pub fn opened(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        Some(match ending.as_str() {
+            "nhdr" => Self::Nrrd,
+            "mha" => Self::MetaImage,
+            _ => return Self::of(path).filter(|format| *format != Self::Tiff),
+        })
     }
 }
 
@@ -83,8 +95,13 @@ pub enum VolumeFileError {
     #[error("{}: volumes are written as .vol, .vdb, .nrrd, .mhd or .tif; end the name in one of them", .0.display())]
     Ending(PathBuf),
     /// A format that is only written.
-    #[error("{}: volumes are read as .vol, .nrrd or .mhd; convert it first", .0.display())]
+    #[error(
+        "{}: volumes are read as .vol, .nrrd, .nhdr, .mhd or .mha; convert it first", .0.display()
+    )]
     NotRead(PathBuf),
+    /// More memory than there is for it.
+    #[error(transparent)]
+    Memory(#[from] TooMuch),
     /// More than the disk holds.
     #[error(
         "{}: the volume needs {} and the disk has {} left; choose a smaller region, fewer voxels \
@@ -107,12 +124,12 @@ pub enum VolumeFileError {
         what: String,
     },
     /// A file could not be read.
-    #[error("cannot read {}: {source}; check the name and that you may read it", path.display())]
+    #[error("cannot read {}: {why}; check the name and that you may read it", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
+        /// What the system said; not a source, which would be said again.
+        why: std::io::Error,
     },
     /// A file that is not what its ending says, or damaged.
     #[error("{}: {what}; {remedy}", path.display())]
@@ -125,12 +142,12 @@ pub enum VolumeFileError {
         remedy: &'static str,
     },
     /// Voxels that make no grid.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {why}", path.display())]
     Grid {
         /// The file.
         path: PathBuf,
-        /// Why.
-        source: VolumeError,
+        /// Why; not a source, which would be said again.
+        why: VolumeError,
     },
 }
 

@@ -1,19 +1,20 @@
 //! NRRD: a text head, an empty line, raw voxels x fastest. Files written here say
 //! spacing and origin in mm, and what their components are.
 //!
-//! Read are attached files of raw encoding with three spatial axes, the components (if
-//! any) first: what this module, Teem, ITK and Slicer write uncompressed.
+//! Read are files of raw encoding with three spatial axes, the components (if any) first,
+//! the voxels behind the head or in one file beside it: what this module, Teem, ITK and
+//! Slicer write uncompressed. `nrrd_head` reads the head; here it is made sense of.
 
 use std::path::Path;
 
+use super::axes::{Lie, RESAMPLE};
 use super::dense::{Channel, Layer};
-use super::fields::{Field, Scalar, numbers, placed};
-use super::read::damaged;
+use super::fields::{Field, Start, Wrong};
+use super::nrrd_head::Head;
+use super::read::{beginning, behind_lines, damaged, length_of};
 use super::{VolumeFileError, beside};
+use crate::formats::atomic::folder_of;
 use crate::volume::source::Frame;
-
-/// Longest text head that is looked for.
-pub(super) const LONGEST_HEAD: usize = 1 << 16;
 
 /// The files of a volume.
 pub(super) fn layers(frame: &Frame, path: &Path) -> Result<Vec<Layer>, VolumeFileError> {
@@ -76,102 +77,97 @@ fn head(frame: &Frame, channel: Channel, content: &str) -> Vec<u8> {
     .into_bytes()
 }
 
-/// What the head of a file of `length` bytes says; `start` is its beginning.
-pub(super) fn field(start: &[u8], length: u64, path: &Path) -> Result<Field, VolumeFileError> {
-    let wrong = |what: String| damaged(path, what, "give an attached NRRD of raw encoding");
-    if !start.starts_with(b"NRRD000") {
-        return Err(wrong("it does not begin with NRRD000".to_owned()));
-    }
-    let end = start
-        .windows(2)
-        .position(|two| two == b"\n\n")
-        .map(|at| at + 2);
-    let end = end.or_else(|| {
-        start
-            .windows(4)
-            .position(|four| four == b"\r\n\r\n")
-            .map(|at| at + 4)
-    });
-    let end = end.ok_or_else(|| wrong("no empty line ends its head".to_owned()))?;
-    let text = String::from_utf8_lossy(&start[..end]);
-    let mut head = Head::default();
-    for line in text.lines().skip(1).filter(|line| !line.starts_with('#')) {
-        if let Some((key, value)) = line.split_once(": ") {
-            head.take(&key.trim().to_ascii_lowercase(), value.trim())
-                .map_err(wrong)?;
+/// What the head of a file says, and the file its voxels are in.
+pub(super) fn field(path: &Path) -> Result<Field, VolumeFileError> {
+    let wrong = |wrong: Wrong| damaged(path, wrong.what, wrong.remedy);
+    let start = beginning(path)?;
+    let (head, end) = Head::of(&start).map_err(wrong)?;
+    let field = understood(path, &head).map_err(wrong)?;
+    let (voxels, attached) = match &head.data_file {
+        None => {
+            let end = end.ok_or_else(|| {
+                wrong(Wrong::new(
+                    "no empty line ends its head",
+                    "it was cut off: copy it again",
+                ))
+            })?;
+            (path.to_owned(), end as u64)
         }
-    }
-    let scalar = head
-        .scalar
-        .ok_or_else(|| wrong("it has no type".to_owned()))?;
-    let (components, size) = match *head.sizes {
-        [x, y, z] => (1, [x, y, z]),
-        [c, x, y, z] => (c, [x, y, z]),
-        _ => return Err(wrong(format!("its sizes are {:?}, not 3 or 4", head.sizes))),
+        Some(name) => (folder_of(path).join(name), 0),
     };
-    let edges = head.edges.unwrap_or([1.0; 3]);
-    let origin = head.origin.unwrap_or(edges.map(|edge| 0.5 * edge));
+    let begin = match skipped(&voxels, attached, &head)? {
+        Some(begin) => begin,
+        None => {
+            let what = format!("its line skip of {} is more than it has", head.line_skip);
+            return Err(wrong(Wrong::new(what, "give the lines before the voxels")));
+        }
+    };
+    let length = length_of(&voxels)?;
     Field {
-        path: path.to_owned(),
-        size: size.into(),
-        bounds: placed(size, edges, origin),
-        components,
-        scalar,
-        big_endian: head.big_endian,
-        offset: end as u64,
+        path: voxels,
+        start: begin,
+        ..field
     }
     .checked(length)
 }
 
-#[derive(Default)]
-struct Head {
-    scalar: Option<Scalar>,
-    sizes: Vec<u32>,
-    edges: Option<[f64; 3]>,
-    origin: Option<[f64; 3]>,
-    big_endian: bool,
+/// Where the voxels begin: behind so many lines, then so many bytes. `None` where there are
+/// not so many lines.
+fn skipped(voxels: &Path, attached: u64, head: &Head) -> Result<Option<Start>, VolumeFileError> {
+    if head.byte_skip == -1 {
+        return Ok(Some(Start::Last));
+    }
+    let behind = behind_lines(voxels, attached, head.line_skip)?;
+    let skip = u64::try_from(head.byte_skip).unwrap_or(0);
+    Ok(behind.map(|behind| Start::At(behind.saturating_add(skip))))
 }
 
-impl Head {
-    fn take(&mut self, key: &str, value: &str) -> Result<(), String> {
-        match key {
-            "type" => {
-                let scalar = Scalar::of_nrrd(value);
-                self.scalar = Some(scalar.ok_or_else(|| format!("its type is {value:.40}"))?);
-            }
-            "sizes" => {
-                let sizes: Result<Vec<u32>, _> = value.split_whitespace().map(str::parse).collect();
-                self.sizes = sizes.map_err(|_| format!("its sizes are {value:.60}"))?;
-            }
-            "encoding" if value != "raw" => return Err(format!("its encoding is {value:.40}")),
-            "data file" | "datafile" => return Err("its voxels are in another file".to_owned()),
-            "endian" => self.big_endian = value == "big",
-            "line skip" | "byte skip" if value != "0" => return Err(format!("it has a {key}")),
-            "spacings" => {
-                let last: Vec<f64> = numbers(value).rev().take(3).collect();
-                if let [z, y, x] = *last {
-                    self.edges = Some([x, y, z]);
-                }
-            }
-            "space directions" => {
-                let all: Vec<f64> = numbers(value).collect();
-                let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = *all else {
-                    return Err("its space directions are not three vectors".to_owned());
-                };
-                let crooked = [xy, xz, yx, yz, zx, zy].iter().any(|&side| side != 0.0);
-                if crooked || !([xx, yy, zz].iter().all(|&edge| edge > 0.0)) {
-                    return Err("its axes are turned against x, y and z".to_owned());
-                }
-                self.edges = Some([xx, yy, zz]);
-            }
-            "space origin" => {
-                let all: Vec<f64> = numbers(value).collect();
-                if let [x, y, z] = *all {
-                    self.origin = Some([x, y, z]);
-                }
-            }
-            _ => {}
+/// What the head says, but for where the voxels are.
+fn understood(path: &Path, head: &Head) -> Result<Field, Wrong> {
+    let absent = |what: &str| Wrong::new(format!("it has no {what}"), "give a whole NRRD");
+    let scalar = head.scalar.ok_or_else(|| absent("type"))?;
+    let (components, size) = match *head.sizes {
+        [] => return Err(absent("sizes")),
+        [x, y, z] => (1, [x, y, z]),
+        [c, x, y, z] => (c, [x, y, z]),
+        _ => {
+            let what = format!("its sizes are {} numbers", head.sizes.len());
+            return Err(Wrong::new(
+                what,
+                "give three axes, or four of which the first counts the numbers of a voxel",
+            ));
         }
-        Ok(())
+    };
+    let axes = head.sizes.len();
+    if head
+        .dimension
+        .is_some_and(|dimension| dimension != axes as u64)
+    {
+        let what = format!("its dimension is not that of its {axes} sizes");
+        return Err(Wrong::new(
+            what,
+            "give a dimension of as many axes as sizes",
+        ));
     }
+    let by_rows = head.kinds(axes)?;
+    let mut warnings = Vec::new();
+    let scale = head.scale(axes, size, &mut warnings)?;
+    let lie = Lie::new(size, scale.steps, scale.origin).ok_or_else(|| {
+        Wrong::new(
+            "its space directions are turned against x, y and z",
+            RESAMPLE,
+        )
+    })?;
+    head.remarks(&mut warnings);
+    Ok(Field {
+        path: path.to_owned(),
+        lie,
+        components,
+        by_rows,
+        scalar,
+        big_endian: head.big_endian,
+        start: Start::Last,
+        unscaled: scale.unknown,
+        warnings,
+    })
 }

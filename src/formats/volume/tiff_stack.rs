@@ -9,12 +9,16 @@ use std::path::Path;
 
 use super::dense::{Channel, Layer};
 use super::{VolumeFileError, beside};
+use crate::memory;
 use crate::volume::source::Frame;
 
 /// Most pages: each needs a directory.
 const MOST_PAGES: u32 = 1 << 20;
 /// Largest TIFF with 32-bit offsets, with room for the directories.
 const LARGEST_CLASSIC: u64 = 0xF000_0000;
+
+/// Most bytes of a page's directory.
+const DIRECTORY: u64 = 300;
 
 const SHORT: u16 = 3;
 const LONG: u16 = 4;
@@ -39,6 +43,9 @@ pub(super) fn layers(
     if page >= LARGEST_CLASSIC {
         return Err(too_large(format!("a TIFF page of {page} bytes")));
     }
+    // A directory a page stands behind the voxels, in either file.
+    let directories = u64::from(frame.size.z) * DIRECTORY;
+    memory::ask(2 * directories, || path.display().to_string())?;
     let unit = densest.max(f32::MIN_POSITIVE) / 65535.0;
     let layer = |path, channel, about: &str| {
         let (head, tail) = around(frame, about);

@@ -4,10 +4,12 @@
 
 use std::path::Path;
 
+use super::axes::Lie;
 use super::dense::{Channel, Layer};
-use super::fields::{Field, Scalar};
-use super::read::damaged;
+use super::fields::{Field, Scalar, Start};
+use super::read::{beginning, damaged, length_of};
 use super::{VolumeFileError, beside};
+use crate::formats::field_table::{Field as Row, Handling, Table};
 use crate::render::Bounds;
 use crate::volume::source::Frame;
 
@@ -43,8 +45,23 @@ fn head(frame: &Frame, channels: u32) -> Vec<u8> {
     head
 }
 
-/// What the head of a file of `length` bytes says.
-pub(super) fn field(start: &[u8], length: u64, path: &Path) -> Result<Field, VolumeFileError> {
+/// What changes size, place, scale or density, by place: the format has no names.
+pub const FIELDS: Table = Table {
+    format: "vol",
+    fields: &[
+        Row::new("version", Handling::Refused, "2"),
+        Row::new("encoding", Handling::Refused, "2"),
+        Row::new("size", Handling::Honoured, "3 4 2"),
+        Row::new("channels", Handling::Refused, "2"),
+        Row::new("box", Handling::Honoured, "1 1 1 2 2 2"),
+        Row::new("box", Handling::Refused, "0 0 0 0 0 0"),
+        Row::new("box", Handling::Refused, "2 2 2 1 1 1"),
+    ],
+};
+
+/// What the head of a file says.
+pub(super) fn field(path: &Path) -> Result<Field, VolumeFileError> {
+    let (start, length) = (beginning(path)?, length_of(path)?);
     let wrong = |what: String| {
         damaged(
             path,
@@ -75,7 +92,8 @@ pub(super) fn field(start: &[u8], length: u64, path: &Path) -> Result<Field, Vol
     let mut size = [0u32; 3];
     for (axis, size) in size.iter_mut().enumerate() {
         let side = i32::from_le_bytes(number(8 + 4 * axis));
-        *size = u32::try_from(side).map_err(|_| wrong(format!("a side has {side} voxels")))?;
+        *size = u32::try_from(side)
+            .map_err(|_| wrong(format!("its size has a side of {side} voxels")))?;
     }
     let channels = i32::from_le_bytes(number(20));
     if ![1, 3, 6].contains(&channels) {
@@ -88,12 +106,14 @@ pub(super) fn field(start: &[u8], length: u64, path: &Path) -> Result<Field, Vol
     };
     Field {
         path: path.to_owned(),
-        size: size.into(),
-        bounds,
+        lie: Lie::straight(size, bounds),
         components: channels as u32,
+        by_rows: false,
         scalar: Scalar::F32,
         big_endian: false,
-        offset: HEAD as u64,
+        start: Start::At(HEAD as u64),
+        unscaled: None,
+        warnings: Vec::new(),
     }
     .checked(length)
 }

@@ -23,12 +23,17 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     let path = &args.output.0;
     check_output(path)?;
     let argument = Path::new(&args.design);
-    if VolumeFormat::of(argument).is_some() {
-        let report = render_volume(argument, &request(args), path)?;
+    if VolumeFormat::opened(argument).is_some() {
+        let report = render_volume((argument, args.voxel), &request(args), path)?;
         if args.json {
             return out::say_json(&report_json(&report));
         }
         return out::say(&describe(&report, path));
+    }
+    if args.voxel.is_some() {
+        anyhow::bail!(
+            "--voxel: only a volume has voxels of its own: give --sett to scale a design"
+        );
     }
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
@@ -97,7 +102,7 @@ pub fn render_to(
 
 /// Renders a volume's file into a picture's.
 fn render_volume(
-    volume: &Path,
+    volume: (&Path, Option<f64>),
     request: &StillRequest,
     path: &Path,
 ) -> anyhow::Result<StillReport> {
@@ -166,6 +171,8 @@ pub fn report_json(report: &StillReport) -> Value {
         "error": report.error,
         "invalid_samples": report.invalid_samples,
         "majorant_violations": report.majorant_violations,
+        "capped_walks": report.capped_walks,
+        "invalid_rays": report.invalid_rays,
         "effects": effects,
         "level": report.level,
         "light_error": light_error,
