@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::picture::{Pass, Shot, Still, Subject, camera_at, lights, settings};
+use super::picture::{Pass, Shot, Still, Subject, ask_for_picture, camera_at, lights, settings};
 use super::{StillError, StillRequest};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
@@ -31,6 +31,8 @@ pub fn render_grid(
     } else {
         Taps::Nearest
     };
+    ask_for_picture(request.width, request.height)?;
+    let job = &request.stop.bounds(job);
     let file = volume::read(path, taps, job)?;
     let reading = ("reading".to_owned(), begun.elapsed().as_secs_f64());
     // Only cloth has these.

@@ -118,8 +118,9 @@ pub fn tubes(
     if with_margin(width).saturating_mul(with_margin(height)) > MOST {
         return Err(TubesError::TooMany(width, height));
     }
+    let design = design.lying();
     let window = Window {
-        design,
+        design: &design,
         weave: design.weave(),
         ends,
         picks,
