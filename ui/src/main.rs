@@ -7,6 +7,8 @@
 mod cli;
 mod command_table;
 mod commands;
+mod interrupt;
+mod late;
 mod opened;
 mod out;
 mod tokens;
@@ -15,13 +17,18 @@ mod volumes;
 mod window;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 
 fn main() -> ExitCode {
+    let begun = Instant::now();
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("off")).init();
     let cli = cli::Cli::parse();
-    match commands::run(cli) {
+    if let Some(complaint) = pickglass::memory::complaint() {
+        out::note(&format!("warning: {complaint}"));
+    }
+    match commands::run(cli, begun) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             out::error_line(&error);
