@@ -15,6 +15,7 @@ type Listener = dyn Fn(&str, f32) + Send + Sync;
 #[derive(Clone, Default)]
 pub struct Job {
     cancelled: Arc<AtomicBool>,
+    enough: Arc<AtomicBool>,
     deadline: Option<Instant>,
     listener: Option<Arc<Listener>>,
 }
@@ -31,10 +32,22 @@ impl Job {
         self
     }
 
-    /// The same job with a moment after which progressive work stops refining.
+    /// The same job with a moment after which progressive work stops refining; the earlier
+    /// one where it has one already.
     pub fn with_deadline(mut self, deadline: Instant) -> Self {
-        self.deadline = Some(deadline);
+        self.deadline = Some(self.deadline.map_or(deadline, |known| known.min(deadline)));
         self
+    }
+
+    /// The moment after which progressive work stops refining.
+    pub fn deadline(&self) -> Option<Instant> {
+        self.deadline
+    }
+
+    /// Asks progressive work to stop refining and give what it has, as a deadline that has
+    /// passed does.
+    pub fn suffice(&self) {
+        self.enough.store(true, Ordering::Relaxed);
     }
 
     /// Asks the work to stop at its next check.
@@ -51,10 +64,12 @@ impl Job {
         }
     }
 
-    /// True once the deadline has passed; work without a deadline never expires.
+    /// True once the deadline has passed or [`Job::suffice`] was called on any clone.
     pub fn expired(&self) -> bool {
-        self.deadline
-            .is_some_and(|deadline| Instant::now() >= deadline)
+        self.enough.load(Ordering::Relaxed)
+            || self
+                .deadline
+                .is_some_and(|deadline| Instant::now() >= deadline)
     }
 
     /// Reports how far a stage has come.

@@ -80,13 +80,14 @@ pub struct YarnClasses {
 }
 
 impl YarnClasses {
-    /// Sorts the yarns of a design by family and size, each size within 5 %.
+    /// Sorts the yarns of a design by family and the size that they lie in, each within 5 %.
     pub fn new(design: &Design) -> Self {
+        let lying = design.lying_yarns();
         let classes = |used: Vec<YarnId>| {
             let mut recipes: Vec<YarnRecipe> = Vec::new();
-            let mut class = vec![0u16; design.yarns().len()];
+            let mut class = vec![0u16; lying.len()];
             for id in used {
-                let recipe = recipe_of(design.yarn(id));
+                let recipe = recipe_of(&lying[usize::from(id.0)]);
                 let known = recipes.iter().position(|r| *r == recipe);
                 let index = known.unwrap_or_else(|| {
                     recipes.push(recipe);

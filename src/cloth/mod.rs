@@ -27,4 +27,4 @@ pub use export::{ClothWindow, Part, Region, WindowError};
 pub use face_relief::{FaceRelief, TEXELS};
 pub use face_table::{FaceTable, Texel};
 pub use hairs::{HairLayer, HairWalk};
-pub use walk::ClothWalk;
+pub use walk::{ClothWalk, REACH_MM};

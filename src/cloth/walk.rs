@@ -10,7 +10,7 @@ use crate::exemplar::{CELL, cell_of};
 use crate::render::{Arrival, Bounds, MajorantWalk, Medium, PLACE, Ray, Stretch, Voxel};
 
 /// Half the side of the largest cloth, mm: rays leave it at last.
-const REACH_MM: f32 = 4000.0;
+pub const REACH_MM: f32 = 4000.0;
 /// Most crossings that one walk visits.
 const MAX_CROSSINGS: u32 = 200_000;
 

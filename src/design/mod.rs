@@ -14,6 +14,7 @@
 //! | `structure` | pattern, draft, notation or regions: where a design's weave is from |
 //! | `source` | the picture that regions were made of |
 //! | `yarn`, `maps`, `sett`, `lattice` | yarns, where they lie, how densely, how they repeat |
+//! | `lying` | how thick yarns lie in the cloth |
 //! | `count` | yarn counts as spinners and weavers write them |
 //! | `stripes` | the order of a direction's yarns as it is typed ("12 navy 4 cream") |
 //! | `tiles` | what patterns and grids are kept in: tiles that clones share |
@@ -36,6 +37,7 @@ mod floats;
 mod grid;
 mod lattice;
 pub mod library;
+mod lying;
 mod maps;
 mod pattern;
 mod reach;
@@ -60,6 +62,7 @@ pub use floats::{FloatKind, FloatLengths, FloatReport, SeamFloat, floats, longes
 pub use grid::Grid;
 pub use lattice::{Lattice, LatticeError, Repeat};
 pub use library::{ColourOrders, LibraryWeave, library};
+pub use lying::TooThick;
 pub use maps::{YarnMap, YarnMaps};
 pub(crate) use pattern::check_size;
 pub use pattern::{ArtError, MAX_CROSSINGS, SizeError, WeavePattern};

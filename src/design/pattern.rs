@@ -1,5 +1,6 @@
 //! The weave pattern: one bit a crossing, in copy-on-write tiles.
 
+use crate::memory::{self, TooMuch};
 use std::fmt;
 use std::sync::Arc;
 
@@ -37,15 +38,41 @@ pub enum SizeError {
         /// Picks asked for.
         picks: u64,
     },
+    /// More crossings than there is memory for.
+    #[error("{}", TooMuch {
+        what: format!("{ends} ends × {picks} picks"), needed: *needed, budget: *budget
+    })]
+    Memory {
+        /// Ends asked for.
+        ends: u64,
+        /// Picks asked for.
+        picks: u64,
+        /// Bytes they would take.
+        needed: u64,
+        /// Bytes that may be taken.
+        budget: u64,
+    },
 }
 
-/// Refuses sizes that are empty or beyond [`MAX_CROSSINGS`], before memory is asked for.
+/// Bytes a crossing of a design: its region or its yarn, and the weave.
+const CROSSING_BYTES: u64 = 3;
+
+/// Refuses sizes that are empty, beyond [`MAX_CROSSINGS`] or beyond the memory that may be
+/// used, before any is taken.
 pub(crate) fn check_size(ends: u64, picks: u64) -> Result<(), SizeError> {
     if ends == 0 || picks == 0 {
         return Err(SizeError::Empty { ends, picks });
     }
     match ends.checked_mul(picks) {
-        Some(crossings) if crossings <= MAX_CROSSINGS => Ok(()),
+        Some(crossings) if crossings <= MAX_CROSSINGS => {
+            let asked = memory::ask(crossings * CROSSING_BYTES, String::new);
+            asked.map_err(|refused| SizeError::Memory {
+                ends,
+                picks,
+                needed: refused.needed,
+                budget: refused.budget,
+            })
+        }
         _ => Err(SizeError::TooLarge { ends, picks }),
     }
 }

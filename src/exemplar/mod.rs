@@ -24,6 +24,8 @@ pub use direction::{decode_direction, encode_direction};
 pub use lobes::Lobes;
 pub(crate) use lobes::bits_of;
 pub use majorants::{Allowance, BlockMajorants, CELL};
-pub use set::{COARSEST_LEVEL, ExemplarError, ExemplarSet, Pair, common_grid, layout, quantise};
+pub use set::{
+    COARSEST_LEVEL, ExemplarError, ExemplarSet, Pair, bytes_at_most, common_grid, layout, quantise,
+};
 pub use store::ExemplarStore;
 pub use voxelise::VoxelGrid;

@@ -7,9 +7,10 @@ use rayon::prelude::*;
 
 use super::bricks::{BRICK, BrickVolume};
 use super::heights::{measure, predict};
-use super::voxelise::{VoxelGrid, voxelise};
+use super::voxelise::{VoxelGrid, building_bytes, bytes_a_voxel, voxelise};
 use crate::job::{Cancelled, Job};
 use crate::limits;
+use crate::memory::TooMuch;
 use crate::synthesis::{Catalogue, EdgeHeights};
 use crate::yarn::{RecipeError, WeaveGeometry, YarnRecipe, hash};
 
@@ -31,6 +32,9 @@ pub enum ExemplarError {
     /// The yarns' spacing is not usable.
     #[error("a thread spacing of {0} mm cannot be woven; give {range} mm", range = limits::in_words(&limits::PITCH_MM))]
     Pitch(f32),
+    /// They are larger than the memory that may be used.
+    #[error(transparent)]
+    Memory(#[from] TooMuch),
     /// The owner cancelled the work.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -207,6 +211,26 @@ impl ExemplarSet {
             .map(|volume| volume.bytes())
             .sum()
     }
+}
+
+/// Bytes that those of the `needed` exemplars of a pair may take, and with them what
+/// building them takes meanwhile.
+pub fn bytes_at_most(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, needed: &[bool]) -> u64 {
+    let block: u64 = grid.block.iter().map(|&side| side as u64).product();
+    let (mut held, mut largest) = (0u64, 0u64);
+    for (weave, _) in catalogue
+        .weaves()
+        .iter()
+        .zip(needed)
+        .filter(|(_, needed)| **needed)
+    {
+        let (ends, picks) = (u64::from(weave.ends()), u64::from(weave.picks()));
+        let voxels = (ends * picks).saturating_mul(block);
+        held = held.saturating_add(voxels.saturating_mul(bytes_a_voxel(grid)));
+        largest = largest.max(building_bytes(pair, grid, [ends, picks]));
+    }
+    let at_once = rayon::current_num_threads() as u64;
+    held.saturating_add(largest.saturating_mul(at_once))
 }
 
 /// The yarns of one exemplar of a catalogue at a spacing of ends and picks, mm: as they lie

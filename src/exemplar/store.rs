@@ -1,8 +1,8 @@
 //! Exemplars on disk: kept by content, rebuilt when damaged, bounded.
 //!
-//! An exemplar's file is named by the hash of everything that it is made from. It ends
-//! with the hash of all bytes before it, so that a damaged or half-written file is found
-//! out and built anew. The least recently used files give way when the folder grows too
+//! An exemplar's file is named by its key, the hash of everything that it is made from. It
+//! begins with the whole key and ends with the hash of all bytes before it, so that a
+//! damaged, half-written or exchanged file is found out and built anew. The least recently used files give way when the folder grows too
 //! large.
 
 use std::ffi::OsString;
@@ -19,11 +19,13 @@ use super::bricks::{BrickVolume, PackedVoxel};
 use super::lobes::Lobes;
 use super::set::{ExemplarError, ExemplarSet, Pair, build_exemplar};
 use super::voxelise::VoxelGrid;
+use crate::formats::atomic;
 use crate::job::{Cancelled, Job};
+use crate::memory;
 use crate::synthesis::Catalogue;
 
 /// Changes whenever exemplars built from the same recipe change.
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 const MAGIC: &[u8; 8] = b"pickglas";
 /// Bytes that the folder may hold.
 const LIMIT: u64 = 4 << 30;
@@ -125,10 +127,10 @@ impl ExemplarStore {
         job: &Job,
     ) -> Result<BrickVolume, Cancelled> {
         job.check()?;
-        let name = || file_name(catalogue, pair, grid, exemplar);
-        let path = self.folder.as_ref().map(|folder| folder.join(name()));
+        let key = key(catalogue, pair, grid, exemplar);
+        let path = (self.folder.as_ref()).map(|folder| folder.join(file_name(&key)));
         if let Some(path) = &path
-            && let Some(volume) = read(path)
+            && let Some(volume) = read(path, &key)
         {
             // Reading is using: the oldest file is the first to go.
             if let Ok(file) = File::options().append(true).open(path) {
@@ -138,7 +140,7 @@ impl ExemplarStore {
         }
         let volume = build_exemplar(catalogue, pair, grid, exemplar, job)?;
         if let (Some(folder), Some(path)) = (&self.folder, &path) {
-            if let Err(error) = write(folder, path, &volume) {
+            if let Err(error) = write(folder, path, &key, &volume) {
                 log::warn!("exemplars are not kept in {}: {error}", folder.display());
             }
             self.make_room(path);
@@ -148,6 +150,9 @@ impl ExemplarStore {
 
     /// Removes the least recently used files beyond the limit, never `keep`.
     fn make_room(&self, keep: &Path) {
+        if let Some(folder) = &self.folder {
+            atomic::sweep(folder);
+        }
         let Some(Ok(entries)) = self.folder.as_ref().map(fs::read_dir) else {
             return;
         };
@@ -169,7 +174,12 @@ impl ExemplarStore {
     }
 }
 
-fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usize) -> String {
+fn file_name(key: &blake3::Hash) -> String {
+    format!("{}.exemplars", &key.to_hex()[..32])
+}
+
+/// The hash of everything that an exemplar is made from.
+fn key(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usize) -> blake3::Hash {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&FORMAT.to_le_bytes());
     // Recipes are plain numbers: their debug form names every one of them exactly.
@@ -182,7 +192,7 @@ fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usi
         }
     }
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-    format!("{}.exemplars", &hasher.finalize().to_hex()[..32])
+    hasher.finalize()
 }
 
 /// The folder that is named, or the user's own; an empty name names none.
@@ -212,14 +222,20 @@ impl<W: Write> Hashed<W> {
     }
 }
 
-fn write(folder: &Path, path: &Path, volume: &BrickVolume) -> std::io::Result<()> {
+fn write(
+    folder: &Path,
+    path: &Path,
+    key: &blake3::Hash,
+    volume: &BrickVolume,
+) -> std::io::Result<()> {
     fs::create_dir_all(folder)?;
-    let temporary = tempfile::NamedTempFile::new_in(folder)?;
+    let temporary = atomic::temporary(folder)?;
     let mut out = Hashed {
         inner: BufWriter::new(temporary),
         hasher: blake3::Hasher::new(),
     };
     out.put(MAGIC)?;
+    out.put(key.as_bytes())?;
     let (size, index, voxels, lobes) = volume.parts();
     out.put_list(&size.map(|n| n as u32))?;
     out.put_list(index)?;
@@ -253,15 +269,24 @@ impl Parts<'_> {
     }
 }
 
-/// The exemplar in a file, or `None` when there is none or it is damaged.
-fn read(path: &Path) -> Option<BrickVolume> {
+/// The exemplar in a file, or `None` when there is none, it is damaged or it is another's.
+fn read(path: &Path, key: &blake3::Hash) -> Option<BrickVolume> {
+    let length = fs::metadata(path).ok()?.len();
+    memory::ask(length, || path.display().to_string()).ok()?;
     let bytes = fs::read(path).ok()?;
-    let (content, hash) = bytes.split_last_chunk::<32>()?;
-    if blake3::hash(content).as_bytes() != hash || !content.starts_with(MAGIC) {
+    let own = |content: &[u8]| {
+        let content = content.strip_prefix(MAGIC)?;
+        content.strip_prefix(key.as_bytes()).map(<[u8]>::len)
+    };
+    let whole = bytes
+        .split_last_chunk::<32>()
+        .filter(|(content, hash)| blake3::hash(content).as_bytes() == *hash)
+        .and_then(|(content, _)| Some(&content[content.len() - own(content)?..]));
+    let Some(content) = whole else {
         log::warn!("{} is damaged and is built again", path.display());
         return None;
-    }
-    let mut parts = Parts(&content[MAGIC.len()..]);
+    };
+    let mut parts = Parts(content);
     let size: [u32; 3] = parts.list::<u32>()?.try_into().ok()?;
     let (index, voxels) = (parts.list::<u32>()?, parts.list::<PackedVoxel>()?);
     let lobes = parts.list::<Lobes>()?;
@@ -313,7 +338,9 @@ mod tests {
         let built = get(&store, &pair);
         assert!(built.volumes[1].is_none());
         let path = only_file(folder.path());
-        assert!(built.volumes[0].as_deref() == read(&path).as_ref());
+        let (catalogue, _, grid) = small();
+        let key = key(&catalogue, &pair, &grid, 0);
+        assert!(built.volumes[0].as_deref() == read(&path, &key).as_ref());
 
         // One bit anywhere, or a cut, and the file is not used but replaced.
         let whole = fs::read(&path).unwrap();
@@ -321,10 +348,10 @@ mod tests {
             let mut damaged = whole.clone();
             damaged[at] ^= 4;
             fs::write(&path, &damaged).unwrap();
-            assert!(read(&path).is_none(), "byte {at}");
+            assert!(read(&path, &key).is_none(), "byte {at}");
         }
         fs::write(&path, &whole[..whole.len() / 3]).unwrap();
-        assert!(read(&path).is_none());
+        assert!(read(&path, &key).is_none());
         get(&store, &pair);
         assert_eq!(fs::read(&path).unwrap(), whole);
     }
@@ -335,6 +362,41 @@ mod tests {
         assert_ne!(user_folder(None), Some(PathBuf::new()));
         let named = user_folder(Some(OsString::from("/there")));
         assert_eq!(named, Some(PathBuf::from("/there")));
+    }
+
+    #[test]
+    fn case_20_exchanged_files_are_not_believed() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = ExemplarStore::at(folder.path(), LIMIT);
+        let (_, pair, _) = small();
+        let other = Pair {
+            warp: YarnRecipe::family(Family::Linen, 0.3),
+            ..pair.clone()
+        };
+        let (first, second) = (get(&store, &pair), get(&store, &other));
+        let files: Vec<PathBuf> = (fs::read_dir(folder.path()).unwrap())
+            .map(|entry| entry.unwrap().path())
+            .collect();
+        let [one, two] = &files[..] else {
+            panic!("two files")
+        };
+        let held = [one, two].map(|path| fs::read(path).unwrap());
+        assert!(held[0] != held[1], "unlike exemplars");
+        fs::write(one, &held[1]).unwrap();
+        fs::write(two, &held[0]).unwrap();
+        assert!(get(&store, &pair).volumes[0] == first.volumes[0]);
+        assert!(get(&store, &other).volumes[0] == second.volumes[0]);
+        // Built again, they are what they were.
+        assert_eq!([one, two].map(|path| fs::read(path).unwrap()), held);
+    }
+
+    #[test]
+    fn what_a_dead_program_left_half_written_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = folder.path().join(".pickglass-gone.tmp");
+        fs::write(&left, b"half").unwrap();
+        get(&ExemplarStore::at(folder.path(), LIMIT), &small().1);
+        assert!(!left.exists());
     }
 
     #[test]

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::bricks::{BRICK, BrickVolume, PackedVoxel};
 use super::lobes::Lobes;
+use super::set::Pair;
 use crate::job::{Cancelled, Job};
 use crate::yarn::fibre::{self, FibreLayout};
 use crate::yarn::{Direction, WeaveGeometry, YarnRecipe};
@@ -50,6 +51,9 @@ struct Strands {
     radius: f32,
 }
 
+/// Dense slabs that are held at once.
+const SLABS_AT_ONCE: usize = 8;
+
 /// Running sums of one voxel.
 #[derive(Clone, Copy, Default)]
 struct Sums {
@@ -82,17 +86,47 @@ pub fn voxelise(
         strands(weave, warp, Direction::Warp, grid, size[1], seed),
         strands(weave, weft, Direction::Weft, grid, size[0], seed),
     ];
-    job.check()?;
-    let slabs: Vec<Slab> = (0..size[1] / BRICK)
-        .into_par_iter()
-        .map(|row| slab(&strands, size, grid, row))
-        .collect();
-    job.check()?;
     let mut volume = BrickVolume::new(size);
-    for (row, (voxels, lobes)) in slabs.iter().enumerate() {
-        volume.put_slab(row, voxels, lobes);
+    let rows: Vec<usize> = (0..size[1] / BRICK).collect();
+    // A few at a time: slabs are dense, and what is kept of them is not.
+    for rows in rows.chunks(SLABS_AT_ONCE) {
+        job.check()?;
+        let slabs: Vec<Slab> = (rows.par_iter())
+            .map(|&row| slab(&strands, size, grid, row))
+            .collect();
+        for (&row, (voxels, lobes)) in rows.iter().zip(&slabs) {
+            volume.put_slab(row, voxels, lobes);
+        }
     }
     Ok(volume)
+}
+
+/// Bytes of one voxel that is kept.
+pub(super) fn bytes_a_voxel(grid: &VoxelGrid) -> u64 {
+    let lobes = if grid.level > 0 {
+        size_of::<Lobes>()
+    } else {
+        0
+    };
+    (size_of::<PackedVoxel>() + lobes) as u64
+}
+
+/// Bytes that building an exemplar of so many ends and picks takes and gives back.
+pub(super) fn building_bytes(pair: &Pair, grid: &VoxelGrid, [ends, picks]: [u64; 2]) -> u64 {
+    let fine = grid.fine().map(|side| side as u64);
+    let points = |recipe: &YarnRecipe, yarns: u64, planes: u64| {
+        let fibres = FibreLayout::new(recipe).len() as u64;
+        yarns * fibres * planes * size_of::<Vec3>() as u64
+    };
+    // Rounded up to whole steps a voxel, there are at most twice as many planes.
+    let strands = points(&pair.warp, ends, 2 * fine[1] * picks).saturating_add(points(
+        &pair.weft,
+        picks,
+        2 * fine[0] * ends,
+    ));
+    let slab = ends * (grid.block[0] * BRICK * grid.block[2]) as u64;
+    let voxel = size_of::<Sums>() as u64 + bytes_a_voxel(grid);
+    strands.saturating_add(slab.saturating_mul(voxel * SLABS_AT_ONCE as u64))
 }
 
 fn strands(

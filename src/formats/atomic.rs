@@ -1,7 +1,21 @@
 //! Writing files so that nothing is ever half-written.
+//!
+//! What is written stands in a temporary file in the same folder until it is whole. That
+//! file is locked as long as its writer lives: [`sweep`] removes those that a killed program
+//! left, and no others. A link is followed, so that it stays one; pipes, devices and folders
+//! are never replaced.
 
+use std::fs::{self, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+/// What the names of temporary files begin and end with.
+const TEMPORARY: [&str; 2] = [".pickglass-", ".tmp"];
+
+/// Links that are followed, one leading to the next.
+const MOST_LINKS: u32 = 40;
 
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -17,6 +31,9 @@ impl WriteError {
     fn remedy(&self) -> &'static str {
         match self.source.kind() {
             io::ErrorKind::NotFound => "make its folder first",
+            io::ErrorKind::IsADirectory | io::ErrorKind::InvalidInput => {
+                "name a file that is to be written"
+            }
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
                 "choose a folder you may write to"
             }
@@ -52,21 +69,40 @@ pub fn write_with(
 }
 
 fn put(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut pending = create(path)?;
+    let target = target(path)?;
+    let mut pending = create(&target)?;
     {
         let mut out = io::BufWriter::new(pending.as_file_mut());
         fill(&mut out)?;
         out.flush()?;
     }
-    finish(pending, path)
+    finish(pending, &target)
+}
+
+/// Tries whether a file can be written at `path`, and leaves nothing but what was there;
+/// also sweeps the folder.
+///
+/// # Errors
+/// [`WriteError`] where it cannot.
+pub fn try_out(path: &Path) -> Result<(), WriteError> {
+    let tried = target(path).and_then(|target| {
+        sweep(folder_of(&target));
+        create(&target).map(drop)
+    });
+    tried.map_err(|source| WriteError {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 /// A file that is being written and is nowhere until [`Pending::commit`]; dropping it
 /// leaves everything as it was.
 #[derive(Debug)]
 pub struct Pending {
-    file: tempfile::NamedTempFile,
+    file: NamedTempFile,
     path: PathBuf,
+    /// Where `path` leads.
+    target: PathBuf,
 }
 
 impl Pending {
@@ -76,8 +112,9 @@ impl Pending {
     /// [`WriteError`] where the folder cannot be written.
     pub fn create(path: &Path) -> Result<Self, WriteError> {
         let path = path.to_owned();
-        match create(&path) {
-            Ok(file) => Ok(Self { file, path }),
+        let created = target(&path).and_then(|target| Ok((create(&target)?, target)));
+        match created {
+            Ok((file, target)) => Ok(Self { file, path, target }),
             Err(source) => Err(WriteError { path, source }),
         }
     }
@@ -103,8 +140,8 @@ impl Pending {
     /// # Errors
     /// [`WriteError`]; what was there before is then unchanged.
     pub fn commit(self) -> Result<(), WriteError> {
-        let Self { file, path } = self;
-        finish(file, &path).map_err(|source| WriteError { path, source })
+        let Self { file, path, target } = self;
+        finish(file, &target).map_err(|source| WriteError { path, source })
     }
 }
 
@@ -116,18 +153,80 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-fn create(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = folder_of(path);
+/// Where a file stands that is written to `path`: links are followed, also one whose file
+/// is not there yet.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(about) = fs::symlink_metadata(&path) else {
+            return Ok(path);
+        };
+        if !about.is_symlink() {
+            return match about {
+                about if about.is_file() => Ok(path),
+                about if about.is_dir() => {
+                    let text = "it is a folder";
+                    Err(io::Error::new(io::ErrorKind::IsADirectory, text))
+                }
+                _ => Err(io::Error::new(
+                    io::ErrorKind::InvalidInput,
+                    "it is a pipe, a device or a socket",
+                )),
+            };
+        }
+        let to = fs::read_link(&path)?;
+        path = folder_of(&path).join(to);
+    }
+    Err(io::Error::new(
+        io::ErrorKind::InvalidInput,
+        "links lead from one to the next without end",
+    ))
+}
+
+/// A temporary file in `folder`, locked for as long as it is open; where the system has no
+/// locks it is not, and no sweep touches it.
+pub(crate) fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut options = tempfile::Builder::new();
-    options.prefix(".pickglass-").suffix(".tmp");
+    options.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
     #[cfg(unix)]
     {
         // As any new file: readable by whom the umask allows; an old file keeps its own.
         use std::os::unix::fs::PermissionsExt;
-        options.permissions(std::fs::Permissions::from_mode(0o666));
+        options.permissions(fs::Permissions::from_mode(0o666));
     }
-    let file = options.tempfile_in(folder)?;
-    if let Ok(old) = std::fs::metadata(path)
+    loop {
+        let file = options.tempfile_in(folder)?;
+        // Another program's sweep may take it before it is locked.
+        let taken = matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
+        if !taken && file.path().exists() {
+            return Ok(file);
+        }
+    }
+}
+
+/// Removes the temporary files in `folder` that no living program holds, and says how many
+/// they were.
+pub fn sweep(folder: &Path) -> usize {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return 0;
+    };
+    let [before, after] = TEMPORARY;
+    let orphan = |entry: &fs::DirEntry| {
+        let name = entry.file_name();
+        let named = (name.to_str()).is_some_and(|n| n.starts_with(before) && n.ends_with(after));
+        if !named || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            return false;
+        }
+        let opened = fs::File::options().write(true).open(entry.path());
+        // It goes while it is locked, so that nobody begins to write into it meanwhile.
+        opened.is_ok_and(|file| file.try_lock().is_ok() && fs::remove_file(entry.path()).is_ok())
+    };
+    entries.flatten().filter(orphan).count()
+}
+
+fn create(target: &Path) -> io::Result<NamedTempFile> {
+    let file = temporary(folder_of(target))?;
+    if let Ok(old) = fs::metadata(target)
         && old.is_file()
     {
         file.as_file().set_permissions(old.permissions())?;
@@ -135,7 +234,7 @@ fn create(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     Ok(file)
 }
 
-fn finish(file: tempfile::NamedTempFile, path: &Path) -> io::Result<()> {
+fn finish(file: NamedTempFile, path: &Path) -> io::Result<()> {
     file.as_file().sync_all()?;
     file.persist(path).map_err(|failed| failed.error)?;
     // The rename itself lasts once the folder is on the disk; not every system can do it.
@@ -201,6 +300,71 @@ mod tests {
         assert!(message.contains("free some space"), "{message}");
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         assert_eq!(names(folder.path()), ["design.ron"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_stay_links() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        std::fs::create_dir(place("kept")).unwrap();
+        write(&place("kept/design.ron"), b"old").unwrap();
+        symlink("kept/design.ron", place("first.ron")).unwrap();
+        symlink(place("first.ron"), place("second.ron")).unwrap();
+        // One that leads to a file that is not there yet.
+        symlink("kept/new.ron", place("third.ron")).unwrap();
+        for (link, file) in [
+            ("second.ron", "kept/design.ron"),
+            ("third.ron", "kept/new.ron"),
+        ] {
+            write(&place(link), link.as_bytes()).unwrap();
+            let mut pending = Pending::create(&place(link)).unwrap();
+            pending.file().write_all(b"through ").unwrap();
+            pending.file().write_all(link.as_bytes()).unwrap();
+            pending.commit().unwrap();
+            let read = std::fs::read_to_string(place(file)).unwrap();
+            assert_eq!(read, format!("through {link}"));
+            assert!(std::fs::symlink_metadata(place(link)).unwrap().is_symlink());
+        }
+        symlink("round.ron", place("round.ron")).unwrap();
+        assert!(write(&place("round.ron"), b"").is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_sockets_devices_and_folders_are_refused_and_stay() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let socket = folder.path().join("socket");
+        let listening = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+        for path in [&socket, Path::new("/dev/null"), folder.path()] {
+            for failed in [write(path, b"x").unwrap_err(), try_out(path).unwrap_err()] {
+                let message = failed.to_string();
+                assert!(message.contains("name a file that is to be"), "{message}");
+            }
+        }
+        let kind = std::fs::metadata(&socket).unwrap().file_type();
+        assert!(kind.is_socket());
+        drop(listening);
+    }
+
+    #[test]
+    fn only_what_nobody_holds_is_swept() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let held = Pending::create(&place("design.ron")).unwrap();
+        std::fs::write(place(".pickglass-gone.tmp"), b"half").unwrap();
+        std::fs::write(place(".other.tmp"), b"").unwrap();
+        assert_eq!(sweep(folder.path()), 1);
+        held.commit().unwrap();
+        let mut left = names(folder.path());
+        left.sort();
+        assert_eq!(left, [".other.tmp", "design.ron"]);
+        // Trying a place out sweeps too, and leaves nothing.
+        std::fs::write(place(".pickglass-gone.tmp"), b"half").unwrap();
+        try_out(&place("new.ron")).unwrap();
+        assert_eq!(names(folder.path()).len(), 2);
     }
 
     #[test]

@@ -6,7 +6,8 @@
 //! `wpo` and `dbw` the files of drafting programs, `jc5` those of jacquard looms, `image`
 //! all kinds of images, `photo` any picture that is to be posterised; `sheet` is what
 //! drafts have in common. `volume` takes cloth out as voxels and reads them in, `yarns` takes
-//! it out as curves and tubes. `atomic` writes files so that nothing is ever half-written.
+//! it out as curves and tubes. `atomic` writes files so that nothing is ever half-written,
+//! `output` says beforehand whether that can and may be done.
 
 pub mod atomic;
 pub mod dbw;
@@ -16,6 +17,7 @@ pub mod exr;
 pub mod field_table;
 pub mod image;
 pub mod jc5;
+pub mod output;
 pub mod pdf;
 pub mod photo;
 pub mod png;

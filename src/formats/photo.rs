@@ -11,6 +11,7 @@ use glam::Vec3;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use crate::design::{MAX_SOURCE_PIXELS, SourceError, SourceImage, Srgb};
+use crate::memory::{self, TooMuch};
 
 /// The largest picture file that is opened.
 const MAX_FILE: u64 = 1 << 28;
@@ -46,6 +47,9 @@ pub enum PhotoError {
         /// Its size.
         what: String,
     },
+    /// More than the memory that may be used.
+    #[error(transparent)]
+    Memory(#[from] TooMuch),
     /// A picture that breaks off or lies about itself.
     #[error("{file}: damaged picture ({problem}); save it anew with another program")]
     Damaged {
@@ -122,6 +126,11 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Photo, PhotoError> {
             what: format!("{width} × {height} pixels"),
         });
     }
+    // As decoded, and as eight bits of three colours.
+    let decoded = (decoder.total_bytes()).saturating_add(3 * u64::from(width) * u64::from(height));
+    memory::ask(decoded, || {
+        format!("{} ({width} × {height} pixels)", file())
+    })?;
     let mut limits = Limits::no_limits();
     // Eight bytes a pixel and a decoder's own copies.
     limits.max_alloc = Some((1 << 26) + 3 * decoder.total_bytes());

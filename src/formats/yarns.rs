@@ -89,6 +89,17 @@ pub fn write(
     }
 }
 
+/// The files that [`write`] makes.
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    let beside = matches!(ending(path), Some(Ending::Obj)).then(|| materials(path));
+    std::iter::once(path.to_owned()).chain(beside).collect()
+}
+
+/// The colours beside an `.obj`.
+fn materials(path: &Path) -> PathBuf {
+    path.with_extension("mtl")
+}
+
 /// Fills a file through a buffer and says how long it became.
 fn filled(
     path: &Path,
@@ -121,7 +132,7 @@ fn write_obj(
     path: &Path,
     job: &Job,
 ) -> Result<Vec<(PathBuf, u64)>, YarnsError> {
-    let materials = path.with_extension("mtl");
+    let materials = materials(path);
     let (library, library_bytes) = filled(&materials, |out| {
         for (number, yarn) in design.yarns().iter().enumerate() {
             let Vec3 { x, y, z } = yarn.colour.to_linear();

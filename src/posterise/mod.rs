@@ -33,6 +33,7 @@ use crate::design::{
     SourceImage, Srgb, Structure, StructureError, Yarn, YarnId, delta_e_00, lab,
 };
 use crate::job::{Cancelled, Job};
+use crate::memory::{self, TooMuch};
 use propose::Yarns;
 use quantise::{Reduced, quantise};
 
@@ -42,6 +43,9 @@ pub enum PosteriseError {
     /// The owner cancelled the work.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// A panel larger than the memory that may be used.
+    #[error(transparent)]
+    Memory(#[from] TooMuch),
     /// A number of colours that cannot be.
     #[error("{0} colours: give 2 to {MAX_COLOURS}")]
     Colours(u16),
@@ -164,6 +168,10 @@ pub fn posterise(
     })
 }
 
+/// Bytes a crossing while colours are reduced: the picture resampled in linear light and in
+/// sRGB, and where it is dithered.
+const CROSSING_BYTES: u64 = 20;
+
 /// The picture at the panel's size in a few colours, without specks.
 fn reduce(
     source: &SourceImage,
@@ -171,6 +179,10 @@ fn reduce(
     layout: &Layout,
     job: &Job,
 ) -> Result<Reduced, PosteriseError> {
+    let crossings = u64::from(layout.ends) * u64::from(layout.picks);
+    memory::ask(crossings.saturating_mul(CROSSING_BYTES), || {
+        format!("a picture in {} × {} crossings", layout.ends, layout.picks)
+    })?;
     job.report("resampling", 0.0);
     let pixels = panel(source, layout, job)?;
     job.report("reducing colours", 0.3);

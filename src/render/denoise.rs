@@ -55,6 +55,9 @@ struct Planes {
 }
 
 impl Denoise {
+    /// Bytes a pixel while it denoises.
+    pub const BYTES: u64 = size_of::<Vec3>() as u64 + 12 * size_of::<f32>() as u64;
+
     /// The film's mean radiances, denoised; premultiplied, row by row from the top.
     ///
     /// # Errors

@@ -135,7 +135,7 @@ impl WithPath for Passes<'_> {
 impl Exposure<'_> {
     /// One pass of `spp` samples in every pixel. Every pixel's random numbers and sums
     /// are its own, so threads and their order change nothing. When the deadline passes,
-    /// the bands not yet begun keep what they have.
+    /// the squares not yet begun keep what they have.
     fn pass<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>(
         &self,
         path: &Path<'_, S, E, SHADOWS, PLANE>,
@@ -151,13 +151,13 @@ impl Exposure<'_> {
             .enumerate()
             .map(|(band, pixels)| {
                 let mut counters = Counters::default();
-                if first > 0 && self.job.expired() {
-                    unfinished.store(true, Ordering::Relaxed);
-                    return Ok(counters);
-                }
                 let top = band as u32 * TILE;
                 let rows = pixels.len() as u32 / width;
                 for left in (0..width).step_by(TILE as usize) {
+                    if first > 0 && self.job.expired() {
+                        unfinished.store(true, Ordering::Relaxed);
+                        return Ok(counters);
+                    }
                     for row in 0..rows {
                         for x in left..(left + TILE).min(width) {
                             // A pass of dense cloth takes seconds; an edit must not wait.

@@ -4,7 +4,8 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::picture::{Pass, Shot, Still, Subject, camera_at, lights, settings};
+use super::finishing;
+use super::picture::{Pass, Shot, Still, Subject, ask_for_picture, camera_at, lights, settings};
 use super::{EffectBase, EffectChoice, StillError, StillRequest};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
@@ -39,6 +40,8 @@ pub fn render_grid(
     for (_, on) in effects.iter_mut().filter(|(name, _)| name == "tap") {
         *on = filtered;
     }
+    ask_for_picture(request.width, request.height)?;
+    let job = &finishing::bounded(request, job);
     let file = volume::read_scaled(path, taps, voxel_mm, job)?;
     let reading = ("reading".to_owned(), begun.elapsed().as_secs_f64());
     // Only cloth has these.

@@ -9,6 +9,7 @@
 mod carried;
 mod effects;
 mod engine;
+mod finishing;
 mod first_sight;
 mod grid;
 mod part;
@@ -43,8 +44,12 @@ use crate::formats::png::PngError;
 use crate::formats::volume::VolumeFileError;
 use crate::formats::volume::mitsuba::SceneError;
 use crate::job::Cancelled;
+use crate::memory::TooMuch;
 use crate::render::LightError;
 use crate::synthesis::SynthesisError;
+
+/// Most pixels of a picture each way.
+pub const LARGEST_SIDE: u32 = 16_384;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -65,8 +70,11 @@ pub enum StillError {
     #[error(transparent)]
     Dial(#[from] DialError),
     /// A size of picture that cannot be made.
-    #[error("a picture of {0} × {1} pixels cannot be made; give 1 to 16384 each way")]
+    #[error("a picture of {0} × {1} pixels cannot be made; give 1 to {LARGEST_SIDE} each way")]
     Size(u32, u32),
+    /// A picture that takes more memory than may be used.
+    #[error(transparent)]
+    Memory(#[from] TooMuch),
     /// A width of cloth that is not a length.
     #[error("a picture {0} mm wide cannot be made; give a width between 0.01 and 100000 mm")]
     Width(f32),

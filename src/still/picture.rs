@@ -9,15 +9,16 @@ use glam::Vec3;
 
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{LightChoice, StillReport, StillRequest};
-use super::{StillError, effects};
-use crate::cloth::ClothSettings;
+use super::{LARGEST_SIDE, StillError, effects, finishing};
+use crate::cloth::{ClothSettings, REACH_MM};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::{exr, png};
 use crate::job::Job;
+use crate::memory;
 use crate::render::{
-    self, Both, Camera, Denoise, Film, LightRig, RenderOutcome, RenderSettings, Scatterer, Tone,
-    View,
+    self, Both, Bounds, Camera, Denoise, Film, LightRig, Pixel, RenderOutcome, RenderSettings,
+    Scatterer, Tone, View,
 };
 
 /// Degrees across the picture where the eye has a direction of its own.
@@ -189,7 +190,8 @@ pub(super) fn camera_at(
     usual: f32,
 ) -> Result<Camera, StillError> {
     let (width, height) = (request.width, request.height);
-    if !(1..=16_384).contains(&width) || !(1..=16_384).contains(&height) {
+    let sides = 1..=LARGEST_SIDE;
+    if !sides.contains(&width) || !sides.contains(&height) {
         return Err(StillError::Size(width, height));
     }
     let width_mm = request.width_mm.unwrap_or(usual);
@@ -218,6 +220,22 @@ pub(super) fn camera_at(
             )
         }
     })
+}
+
+/// Bytes a pixel of a picture that is shown and written: colours, samples, encoded bytes.
+pub(super) const SHOWN_BYTES: u64 = 40;
+
+/// Asks for the memory that a picture takes from film to file.
+///
+/// # Errors
+/// [`StillError::Memory`].
+pub(super) fn ask_for_picture(width: u32, height: u32) -> Result<(), StillError> {
+    let pixel = size_of::<Pixel>() as u64 + Denoise::BYTES + SHOWN_BYTES;
+    let pixels = u64::from(width) * u64::from(height);
+    memory::ask(pixels.saturating_mul(pixel), || {
+        format!("a picture of {width} × {height} pixels")
+    })?;
+    Ok(())
 }
 
 /// Renders one picture; `on_pass` sees it after every pass.
@@ -253,6 +271,7 @@ pub fn render(
     still.report.level = cloth.level();
     still.report.warnings.extend(prepared.check_level().err());
     still.report.light_error = cloth.light_error();
+    (still.report.warnings).extend(end_in_view(&shot.camera, &cloth.bounds(), request));
     Ok(still)
 }
 
@@ -278,15 +297,9 @@ impl Shot<'_> {
             settings,
             request,
         } = self;
+        ask_for_picture(request.width, request.height)?;
         let tone = self.tone();
-        let job = match request
-            .stop
-            .seconds
-            .and_then(|s| Duration::try_from_secs_f64(s).ok())
-        {
-            Some(time) => job.clone().with_deadline(Instant::now() + time),
-            None => job.clone(),
-        };
+        let job = request.stop.bounds(job);
         let denoise = effects::denoises(&request.dials);
         let mut show = |film: &Film, progress: &render::Progress| {
             on_pass(&Pass {
@@ -374,6 +387,31 @@ pub(super) fn in_view(
     )
 }
 
+/// A remark where the picture shows the end of a cloth that repeats without one.
+fn end_in_view(camera: &Camera, bounds: &Bounds, request: &StillRequest) -> Option<String> {
+    let (width, height) = (request.width as f32, request.height as f32);
+    let beyond = |x: f32, y: f32| {
+        let ray = camera.ray(x, y);
+        let at = ray.at(-ray.origin.z / ray.direction.z);
+        // No corner of a picture shows the cloth's own edge by chance: it ends there, or the
+        // ray never meets its plane.
+        [
+            (at.x, bounds.min.x, bounds.max.x),
+            (at.y, bounds.min.y, bounds.max.y),
+        ]
+        .into_iter()
+        .any(|(at, low, high)| !(at >= low || low > -REACH_MM) || !(at <= high || high < REACH_MM))
+    };
+    let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
+    corners.into_iter().any(|(x, y)| beyond(x, y)).then(|| {
+        format!(
+            "the cloth is made {:.0} m to each side of its first crossing: the picture shows \
+             where it ends; show less with --mm",
+            1e-3 * REACH_MM
+        )
+    })
+}
+
 /// Prepares and renders in one go, with the user's exemplar store.
 ///
 /// # Errors
@@ -384,6 +422,8 @@ pub fn render_still(
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<Still, StillError> {
+    ask_for_picture(request.width, request.height)?;
+    let job = &finishing::bounded(request, job);
     let cloth = prepare(design, request, &ExemplarStore::user(), job)?;
     render(&cloth, request, job, on_pass)
 }

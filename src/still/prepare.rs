@@ -11,9 +11,10 @@ use super::picture::{SwitchedEffects, settings};
 use super::request::StillRequest;
 use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
 use crate::design::{Design, WeavePattern};
-use crate::exemplar::ExemplarStore;
 use crate::exemplar::hairs::HairPatch;
+use crate::exemplar::{ExemplarError, ExemplarSet, ExemplarStore, Pair, VoxelGrid, bytes_at_most};
 use crate::job::Job;
+use crate::memory;
 use crate::synthesis::{Catalogue, Stretch};
 
 /// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
@@ -214,6 +215,29 @@ pub(super) fn coloured(
     }
 }
 
+/// The exemplar sets of all pairs, each asked for before it is made.
+fn exemplars(
+    catalogue: &Catalogue,
+    pairs: &[Pair],
+    grid: VoxelGrid,
+    needed: &[bool],
+    store: &ExemplarStore,
+    job: &Job,
+) -> Result<Vec<Arc<ExemplarSet>>, ExemplarError> {
+    let (mut sets, mut held) = (Vec::with_capacity(pairs.len()), 0u64);
+    for pair in pairs {
+        let more = bytes_at_most(catalogue, pair, &grid, needed);
+        memory::ask(held.saturating_add(more), || {
+            "the exemplars of this cloth (fewer sizes of yarn, or more even setts, take less)"
+                .to_owned()
+        })?;
+        let set = store.get(catalogue, pair, grid, needed, job)?;
+        held = held.saturating_add(set.bytes() as u64);
+        sets.push(set);
+    }
+    Ok(sets)
+}
+
 /// Builds what every picture of a design needs; `request` gives the dials, the seed and
 /// the colourway.
 ///
@@ -256,9 +280,7 @@ pub fn prepare_woven(
     let begun = Instant::now();
     let classes = YarnClasses::new(design);
     let grid = ClothVolume::grid_for(&catalogue, &classes, &settings).map_err(ClothError::from)?;
-    let sets = (classes.pairs.iter())
-        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
-        .collect::<Result<Vec<_>, _>>()
+    let sets = exemplars(&catalogue, &classes.pairs, grid, &needed, store, job)
         .map_err(ClothError::from)?;
     let exemplars = begun.elapsed().as_secs_f64();
     let begun = Instant::now();

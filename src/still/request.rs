@@ -1,7 +1,9 @@
 //! What picture is asked for, and how it came about.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
+use crate::job::Job;
 use crate::render::{Backing, PRESET_NAMES, View};
 
 /// What lights the cloth.
@@ -13,6 +15,16 @@ pub enum LightChoice {
     Environment(PathBuf),
     /// A sun from a direction that the person points out, under a soft sky.
     Sun(Heading),
+}
+
+impl LightChoice {
+    /// The file that it is read from, if any.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Environment(path) => Some(path),
+            Self::Preset(_) | Self::Sun(_) => None,
+        }
+    }
 }
 
 /// A direction over the side of the cloth that is looked at, in whole degrees.
@@ -70,10 +82,24 @@ pub struct EffectChoice {
 pub struct Stop {
     /// Samples in every pixel.
     pub spp: Option<u32>,
-    /// Seconds of rendering.
+    /// Seconds of the whole work, from making the cloth to denoising and writing; a picture
+    /// has one sample in every pixel even where that takes longer.
     pub seconds: Option<f64>,
     /// Error, see [`crate::render::error`].
     pub error: Option<f64>,
+}
+
+impl Stop {
+    /// A job that ends when the seconds have passed from now on, or when it did before.
+    pub(super) fn bounds(&self, job: &Job) -> Job {
+        let time = self
+            .seconds
+            .and_then(|s| Duration::try_from_secs_f64(s).ok());
+        match time.and_then(|time| Instant::now().checked_add(time)) {
+            Some(deadline) => job.clone().with_deadline(deadline),
+            None => job.clone(),
+        }
+    }
 }
 
 /// A picture that is asked for.
@@ -96,7 +122,8 @@ pub struct StillRequest {
     pub light: LightChoice,
     /// Exposure in stops.
     pub exposure_ev: f32,
-    /// What lies behind the cloth.
+    /// What lies behind the cloth; unsaid: nothing, as where its colours were measured.
+    /// Pictures that are kept show more of the cloth itself through its gaps.
     pub backing: Backing,
     /// Which effects are simulated.
     pub effects: EffectChoice,

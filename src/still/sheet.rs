@@ -5,24 +5,23 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
-use super::picture::{Pass, Still, render};
+use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, render};
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{StillReport, StillRequest};
-use super::{StillError, png_ending};
+use super::{LARGEST_SIDE, StillError, png_ending};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::png;
 use crate::job::Job;
+use crate::memory;
 
 /// What the design's own yarns are called on a sheet.
 pub const AS_DESIGNED: &str = "as designed";
 
 /// The most pictures in a row while there are few.
 const FEW: usize = 4;
-/// The largest sheet in pixels each way.
-const LARGEST: u32 = 16_384;
-
 /// Where one colourway stands on a sheet.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SheetPlace {
@@ -100,7 +99,7 @@ impl Layout {
         let (all_width, all_height) = (length(width, columns as u64), length(height, rows));
         let clipped = |length: u64| u32::try_from(length).unwrap_or(u32::MAX);
         let size = (clipped(all_width), clipped(all_height));
-        if size.0 > LARGEST || size.1 > LARGEST {
+        if size.0 > LARGEST_SIDE || size.1 > LARGEST_SIDE {
             return Err(StillError::Size(size.0, size.1));
         }
         Ok(Self { columns, gap, size })
@@ -142,6 +141,9 @@ pub fn render_sheet(
         colourway: None,
         ..request.clone()
     };
+    ask_for_picture(width, height)?;
+    ask_for_sheet(layout.size)?;
+    let job = &finishing::bounded(&request, job);
     let clear = [1.0, 1.0, 1.0, 0.0];
     let mut picture = png::Picture {
         width: layout.size.0,
@@ -153,6 +155,7 @@ pub fn render_sheet(
     let mut report = StillReport::default();
     let mut metadata = png::Metadata::default();
     for (index, (name, design)) in designs.into_iter().enumerate() {
+        let job = &share_of_time(job, count - index);
         let recoloured = cloth.as_mut().is_some_and(|cloth| cloth.recolour(&design));
         let ready = match cloth.take() {
             Some(ready) if recoloured => ready,
@@ -187,6 +190,25 @@ pub fn render_sheet(
         picture,
         metadata,
     })
+}
+
+/// The job of the next of so many pictures: it has an equal share of the time that is left.
+fn share_of_time(job: &Job, pictures: usize) -> Job {
+    let Some(deadline) = job.deadline() else {
+        return job.clone();
+    };
+    let now = Instant::now();
+    let share = deadline.saturating_duration_since(now) / pictures.max(1) as u32;
+    job.clone().with_deadline(now + share)
+}
+
+/// Asks for the memory of a sheet while it is written.
+fn ask_for_sheet((width, height): (u32, u32)) -> Result<(), StillError> {
+    let pixels = u64::from(width) * u64::from(height);
+    memory::ask(pixels * SHOWN_BYTES, || {
+        format!("a sheet of {width} × {height} pixels")
+    })?;
+    Ok(())
 }
 
 /// Copies a picture into the sheet.

@@ -86,8 +86,9 @@ pub fn cross_section(
             design.warp_yarn(along, thread),
         ),
     };
+    let lying = design.lying_yarns();
     let recipe = |id: YarnId| {
-        let yarn = design.yarn(id);
+        let yarn = &lying[usize::from(id.0)];
         YarnRecipe::family(yarn.family, yarn.diameter())
     };
     let (own, across) = yarn_at(first);

@@ -117,8 +117,9 @@ pub fn tubes(
     if width.saturating_mul(height) > YARN_CROSSINGS {
         return Err(TubesError::TooMany(width, height));
     }
+    let design = design.lying();
     let window = Window {
-        design,
+        design: &design,
         weave: design.weave(),
         ends,
         picks,

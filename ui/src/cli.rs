@@ -299,7 +299,7 @@ pub struct StillArgs {
     /// Paths per pixel [default: 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub spp: Option<u32>,
-    /// Refine for this long
+    /// End after this long, with all that it takes
     #[arg(long, value_name = "S", value_parser = values::positive)]
     pub seconds: Option<f64>,
     /// Refine until the relative error is this small, e.g. 0.02 or 2%
@@ -320,9 +320,9 @@ pub struct StillArgs {
     /// Exposure in stops
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::finite)]
     pub exposure: f64,
-    /// What lies behind the cloth
-    #[arg(long, default_value = "none", value_parser = values::backing())]
-    pub backing: Backing,
+    /// What lies behind the cloth [default: self; none behind a volume]
+    #[arg(long, value_parser = values::backing())]
+    pub backing: Option<Backing>,
     /// What draws the picture
     #[arg(long, value_enum, default_value_t = RendererArg::Auto)]
     pub renderer: RendererArg,

@@ -7,6 +7,8 @@
 mod cli;
 mod command_table;
 mod commands;
+mod interrupt;
+mod late;
 mod opened;
 mod out;
 mod tokens;
@@ -15,13 +17,18 @@ mod volumes;
 mod window;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 
 fn main() -> ExitCode {
+    let begun = Instant::now();
     out::start_log();
     let cli = cli::Cli::try_parse().unwrap_or_else(|error| out::usage(&error));
-    match commands::run(cli) {
+    if let Some(complaint) = pickglass::memory::complaint() {
+        out::note(&format!("warning: {complaint}"));
+    }
+    match commands::run(cli, begun) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             out::error_line(&error);

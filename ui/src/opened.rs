@@ -70,6 +70,15 @@ impl Opened {
         Ok(Self::new(design, warnings, path))
     }
 
+    /// The files that a design argument and its flags name.
+    pub fn inputs<'a>(argument: &'a str, image: &'a ImageArgs) -> Vec<&'a Path> {
+        let design = (presets::design(argument).is_none()).then_some(Path::new(argument));
+        let maps = [&image.warp_map, &image.weft_map];
+        (design.into_iter())
+            .chain(maps.into_iter().flatten().map(PathBuf::as_path))
+            .collect()
+    }
+
     /// Opens a preset by name.
     pub fn preset(name: &str) -> anyhow::Result<Self> {
         match presets::design(name) {
@@ -89,7 +98,8 @@ impl Opened {
         Ok(Self::new(design, warnings, Some(path)))
     }
 
-    fn new(mut design: Design, warnings: Vec<String>, path: Option<PathBuf>) -> Self {
+    fn new(mut design: Design, mut warnings: Vec<String>, path: Option<PathBuf>) -> Self {
+        warnings.extend(design.too_thick().iter().map(ToString::to_string));
         if design.name.trim().is_empty() {
             design.name = "untitled".to_owned();
         }

@@ -138,10 +138,23 @@ impl Progress {
         if line.0.is_none() {
             return Job::new();
         }
+        Job::new().with_listener(move |stage, fraction| line.stage(stage, fraction))
+    }
+
+    /// As [`Progress::job`], with a listener that is told as well.
+    pub fn job_with(&self, also: impl Fn(&str, f32) + Send + Sync + 'static) -> Job {
+        let line = self.clone();
         Job::new().with_listener(move |stage, fraction| {
-            let percent = (fraction.clamp(0.0, 1.0) * 100.0).round();
-            line.show(&format!("{stage} {percent} %"));
+            line.stage(stage, fraction);
+            also(stage, fraction);
         })
+    }
+
+    fn stage(&self, stage: &str, fraction: f32) {
+        if self.0.is_some() {
+            let percent = (fraction.clamp(0.0, 1.0) * 100.0).round();
+            self.show(&format!("{stage} {percent} %"));
+        }
     }
 
     /// Rewrites the line, unless it was just rewritten.

@@ -10,7 +10,7 @@ use pickglass::limits;
 use pickglass::render::{Backing, PRESET_NAMES, View};
 
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
-use pickglass::still::{EffectBase, EffectChoice, LightChoice};
+use pickglass::still::{EffectBase, EffectChoice, LARGEST_SIDE, LightChoice};
 
 /// Threads per cm, along both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,9 +40,6 @@ pub struct Dial {
     pub name: String,
     pub value: String,
 }
-
-/// Largest side of a picture.
-const LARGEST_SIDE: u32 = 32_768;
 
 /// `E` or `ExP`, threads per cm.
 pub fn sett(text: &str) -> Result<SettArg, String> {

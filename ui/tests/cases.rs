@@ -49,6 +49,8 @@ mod case_18;
 mod case_19;
 #[path = "cases/case_20.rs"]
 mod case_20;
+#[path = "cases/case_20_files.rs"]
+mod case_20_files;
 #[path = "cases/case_20_limits.rs"]
 mod case_20_limits;
 #[path = "cases/volumes.rs"]

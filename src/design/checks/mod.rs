@@ -76,8 +76,11 @@ impl MillReport {
     }
 }
 
-/// Checks a design.
+/// Checks a design. Yarns that have no room are obstacles, and all numbers are those of the
+/// cloth in which they touch.
 pub fn check(design: &Design) -> MillReport {
+    let too_thick = design.too_thick();
+    let design = &design.lying();
     let weave = design.weave();
     let found = lattice_floats(design, &weave);
     let warp = take_up(design, &weave, Interlacing::Warp);
@@ -90,7 +93,9 @@ pub fn check(design: &Design) -> MillReport {
     let far = |threads: u64| i64::try_from(threads).unwrap_or(i64::MAX >> 1);
     let grams: f64 = needs.yarns.iter().map(|yarn| yarn.grams).sum();
     MillReport {
-        obstacles: obstacles(design, &found.unbound_ends, &found.unbound_picks),
+        obstacles: (too_thick.iter().map(ToString::to_string))
+            .chain(obstacles(design, &found.unbound_ends, &found.unbound_picks))
+            .collect(),
         longest: found.longest,
         inside: found.inside,
         seams: found.seams,

@@ -28,7 +28,8 @@ pub fn run(args: &CheckArgs) -> anyhow::Result<()> {
 
 /// What a weaver should look at.
 fn remarks(opened: &Opened, report: &MillReport) -> Vec<String> {
-    let mut remarks = report.obstacles.clone();
+    let told = |obstacle: &&String| !opened.warnings.contains(obstacle);
+    let mut remarks: Vec<String> = report.obstacles.iter().filter(told).cloned().collect();
     for (kind, length) in report.longest.kinds() {
         if length.mm > SNAG_MM {
             remarks.push(format!(

@@ -4,16 +4,19 @@ use std::path::Path;
 
 use pickglass::design::Design;
 use pickglass::formats::jc5::{self, LoomPreset, WriteOptions};
-use pickglass::formats::{self, atomic, read_bytes};
+use pickglass::formats::{self, atomic, output, read_bytes};
 use serde_json::json;
 
-use super::{check_output, note_warnings};
+use super::note_warnings;
 use crate::cli::ConvertArgs;
 use crate::opened::{self, Opened};
 use crate::out;
 
 pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
-    check_output(&args.output)?;
+    let mut inputs = Opened::inputs(&args.input, &args.image);
+    inputs.extend(args.loom.like.as_deref());
+    inputs.extend(args.loom.loom.as_deref().map(Path::new));
+    output::check(&args.output, inputs)?;
     let opened = Opened::argument(&args.input, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let lost = write(&opened.design, args)?;

@@ -1,15 +1,15 @@
 //! `pickglass posterize`: a picture becomes regions of weaves.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use pickglass::design::{Structure, Yarn, YarnId, YarnMap};
-use pickglass::formats::{LoadOptions, atomic, load, photo, ron};
+use pickglass::formats::{LoadOptions, atomic, load, output, photo, ron};
 use pickglass::posterise::{Fit, PosteriseSettings, Posterised, posterise};
 use serde_json::{Value, json};
 
-use super::{check_output, note_warnings};
+use super::note_warnings;
 use crate::cli::{FitArg, PosterizeArgs};
 use crate::out::{self, Progress};
 
@@ -25,7 +25,8 @@ pub fn run(args: &PosterizeArgs) -> anyhow::Result<()> {
     {
         anyhow::bail!("{shown}: designs are written as .ron: end the name in .ron");
     }
-    check_output(path)?;
+    let inputs = [Some(&args.image), args.keep.as_ref()];
+    output::check(path, inputs.into_iter().flatten().map(PathBuf::as_path))?;
     let begun = Instant::now();
     let progress = Progress::new();
     progress.show("reading");

@@ -1,34 +1,49 @@
 //! `pickglass still`: a picture of the cloth.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use super::{check_output, note_warnings, seconds_json};
+use super::{note_warnings, seconds_json};
 use crate::cli::{RendererArg, StillArgs};
+use crate::interrupt::Interrupt;
+use crate::late::Late;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
 use pickglass::exemplar::ExemplarStore;
+use pickglass::formats::output;
 use pickglass::formats::volume::VolumeFormat;
-use pickglass::still::{self, Pass, StillReport, StillRequest, Stop};
+use pickglass::job::Job;
+use pickglass::render::Backing;
+use pickglass::still::{self, Pass, StillError, StillReport, StillRequest, Stop};
 
 /// Paths per pixel when no way to stop is given.
 const USUAL_SPP: u32 = 64;
 
+/// Longer than anybody waits: no end at all.
+const LONGEST_SECONDS: f64 = 1e9;
+
 /// The name that asks for a sheet of every colourway.
 const ALL_COLOURWAYS: &str = "all";
 
-pub fn run(args: &StillArgs) -> anyhow::Result<()> {
+/// Makes the picture; the program began at `begun`.
+pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     refuse_absent_renderers(args.renderer)?;
     let path = &args.output.0;
-    check_output(path)?;
-    let argument = Path::new(&args.design);
-    if VolumeFormat::opened(argument).is_some() {
-        let report = render_volume((argument, args.voxel), &request(args), path)?;
-        if args.json {
-            return out::say_json(&report_json(&report));
-        }
-        return out::say(&describe(&report, path));
+    let mut inputs = Opened::inputs(&args.design, &args.image);
+    inputs.extend(args.light.file());
+    output::check(path, inputs)?;
+    let volume = Path::new(&args.design);
+    if VolumeFormat::opened(volume).is_some() {
+        let request = request(args, Backing::None);
+        let work = Work::begin(&request.stop, begun);
+        let volume = (volume, args.voxel);
+        let made = still::render_grid(volume, &request, &work.job, &mut |pass| work.pass(pass));
+        let (still, warnings) = work.ended(made)?;
+        note_warnings(&warnings);
+        still.save(path)?;
+        return tell(&still.report, path, work.interrupt.happened(), args.json);
     }
     if args.voxel.is_some() {
         anyhow::bail!(
@@ -37,35 +52,103 @@ pub fn run(args: &StillArgs) -> anyhow::Result<()> {
     }
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
+    let request = request(args, Backing::Itself);
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
-        return sheet(args, &opened, path);
+        return sheet(args, &opened, &request, begun);
     }
-    let report = render_to(&opened, &request(args), path)?;
-    if args.json {
-        return out::say_json(&report_json(&report));
+    let made = render_to(&opened, &request, path, begun)?;
+    tell(&made.0, path, made.1, args.json)
+}
+
+/// Says how a picture came about.
+pub fn tell(
+    report: &StillReport,
+    path: &Path,
+    interrupted: bool,
+    json: bool,
+) -> anyhow::Result<()> {
+    note_warnings(&report.warnings);
+    match json {
+        true => out::say_json(&report_json(report, interrupted)),
+        false => out::say(&describe(report, path, interrupted)),
     }
-    out::say(&describe(&report, path))
+}
+
+/// A picture under way: its progress, what ends it, and what is told of it meanwhile.
+struct Work {
+    progress: Progress,
+    job: Job,
+    interrupt: Interrupt,
+    /// Told when the first pass comes.
+    late: Late,
+}
+
+impl Work {
+    fn begin(stop: &Stop, begun: Instant) -> Self {
+        let progress = Progress::new();
+        let seconds = stop.seconds.filter(|seconds| *seconds < LONGEST_SECONDS);
+        let deadline = seconds.map(|seconds| begun + Duration::from_secs_f64(seconds));
+        let late = Late::watch(deadline, &progress);
+        let mut job = progress.job_with(late.listener());
+        if let Some(deadline) = deadline {
+            job = job.with_deadline(deadline);
+        }
+        let interrupt = Interrupt::watch(&job);
+        Self {
+            progress,
+            job,
+            interrupt,
+            late,
+        }
+    }
+
+    fn pass(&self, pass: &Pass<'_>) {
+        self.late.in_time();
+        self.interrupt.keep();
+        let error = pass.error.map_or_else(String::new, |error| {
+            format!(" · error {:.1} %", error * 100.0)
+        });
+        (self.progress).show(&format!("{} spp · {:.1} s{error}", pass.spp, pass.seconds));
+    }
+
+    /// What was made, or why not.
+    fn ended<T>(&self, made: Result<T, StillError>) -> anyhow::Result<T> {
+        self.progress.finish();
+        match made {
+            Err(StillError::Cancelled(_)) if self.interrupt.happened() => anyhow::bail!(
+                "interrupted before there was a picture: nothing was written; give it more time"
+            ),
+            made => Ok(made?),
+        }
+    }
 }
 
 /// Renders all colourways of a design into one file.
-fn sheet(args: &StillArgs, opened: &Opened, path: &Path) -> anyhow::Result<()> {
+fn sheet(
+    args: &StillArgs,
+    opened: &Opened,
+    request: &StillRequest,
+    begun: Instant,
+) -> anyhow::Result<()> {
+    let path = &args.output.0;
     still::png_ending(path)?;
-    let progress = Progress::new();
+    let work = Work::begin(&request.stop, begun);
     let mut show = |index: usize, count: usize, pass: &Pass<'_>| {
+        work.pass(pass);
         let picture = index + 1;
-        progress.show(&format!(
+        work.progress.show(&format!(
             "colourway {picture} of {count} · {} spp",
             pass.spp
         ));
     };
-    let (request, store) = (request(args), ExemplarStore::user());
-    let sheet = still::render_sheet(&opened.design, &request, &store, &progress.job(), &mut show);
-    progress.finish();
-    let sheet = sheet?;
+    let store = ExemplarStore::user();
+    let sheet = still::render_sheet(&opened.design, request, &store, &work.job, &mut show);
+    let sheet = work.ended(sheet)?;
     sheet.save(path)?;
     note_warnings(&sheet.report.warnings);
+    let interrupted = work.interrupt.happened();
     if args.json {
-        let mut report = report_json(&sheet.report);
+        let mut report = report_json(&sheet.report, interrupted);
         let places = sheet.places.iter().map(|place| {
             json!({
                 "name": place.name,
@@ -79,54 +162,34 @@ fn sheet(args: &StillArgs, opened: &Opened, path: &Path) -> anyhow::Result<()> {
         report["colourways"] = places.collect();
         return out::say_json(&report);
     }
-    let line = describe(&sheet.report, path);
+    let line = describe(&sheet.report, path, interrupted);
     out::say(&format!("{line}\n  {}", sheet.labels()))
 }
 
-/// Renders a picture into a file, with progress on standard error.
+/// Renders a picture into a file, with progress on standard error; says also whether an
+/// interrupt ended it.
 pub fn render_to(
     opened: &Opened,
     request: &StillRequest,
     path: &Path,
-) -> anyhow::Result<StillReport> {
-    let progress = Progress::new();
-    let still = still::render_still(&opened.design, request, &progress.job(), &mut |pass| {
-        show_pass(&progress, pass);
+    begun: Instant,
+) -> anyhow::Result<(StillReport, bool)> {
+    let work = Work::begin(&request.stop, begun);
+    let still = still::render_still(&opened.design, request, &work.job, &mut |pass| {
+        work.pass(pass);
     });
-    progress.finish();
-    let still = still?;
+    let still = work.ended(still)?;
     still.save(path)?;
-    note_warnings(&still.report.warnings);
-    Ok(still.report)
-}
-
-/// Renders a volume's file into a picture's.
-fn render_volume(
-    volume: (&Path, Option<f64>),
-    request: &StillRequest,
-    path: &Path,
-) -> anyhow::Result<StillReport> {
-    let progress = Progress::new();
-    let still = still::render_grid(volume, request, &progress.job(), &mut |pass| {
-        show_pass(&progress, pass);
-    });
-    progress.finish();
-    let (still, warnings) = still?;
-    note_warnings(&warnings);
-    still.save(path)?;
-    note_warnings(&still.report.warnings);
-    Ok(still.report)
-}
-
-fn show_pass(progress: &Progress, pass: &still::Pass) {
-    let error = pass.error.map_or_else(String::new, |error| {
-        format!(" · error {:.1} %", error * 100.0)
-    });
-    progress.show(&format!("{} spp · {:.1} s{error}", pass.spp, pass.seconds));
+    Ok((still.report, work.interrupt.happened()))
 }
 
 /// The picture's line for a person.
-pub fn describe(report: &StillReport, path: &Path) -> String {
+fn describe(report: &StillReport, path: &Path, interrupted: bool) -> String {
+    let so_far = if interrupted {
+        ", interrupted: the picture so far"
+    } else {
+        ""
+    };
     let error = report.error.map_or_else(String::new, |error| {
         format!(", error {:.2} %", error * 100.0)
     });
@@ -143,7 +206,7 @@ pub fn describe(report: &StillReport, path: &Path) -> String {
         ),
     };
     format!(
-        "wrote {} ({} x {}, {} spp{error}{level}, {:.1} s, {:.2} M paths/s){wrong}",
+        "wrote {} ({} x {}, {} spp{error}{level}, {:.1} s, {:.2} M paths/s{so_far}){wrong}",
         out::shown(path),
         report.width,
         report.height,
@@ -154,7 +217,7 @@ pub fn describe(report: &StillReport, path: &Path) -> String {
 }
 
 /// The picture's report with the keys that scripts rely on.
-pub fn report_json(report: &StillReport) -> Value {
+fn report_json(report: &StillReport, interrupted: bool) -> Value {
     let effects: Vec<Value> = report
         .effects
         .iter()
@@ -176,6 +239,7 @@ pub fn report_json(report: &StillReport) -> Value {
         "effects": effects,
         "level": report.level,
         "light_error": light_error,
+        "interrupted": interrupted,
         "warnings": report.warnings,
     })
 }
@@ -189,7 +253,8 @@ fn refuse_absent_renderers(renderer: RendererArg) -> anyhow::Result<()> {
     anyhow::bail!("--renderer {name}: this build has no such renderer: use auto or cpu")
 }
 
-fn request(args: &StillArgs) -> StillRequest {
+/// What is asked for, before `backing` where nothing is said of that.
+fn request(args: &StillArgs, backing: Backing) -> StillRequest {
     let mut stop = Stop {
         spp: args.spp,
         seconds: args.seconds,
@@ -207,7 +272,7 @@ fn request(args: &StillArgs) -> StillRequest {
         centre_mm: None,
         light: args.light.clone(),
         exposure_ev: args.exposure as f32,
-        backing: args.backing,
+        backing: args.backing.unwrap_or(backing),
         effects: args.effects.clone(),
         dials: args
             .dials

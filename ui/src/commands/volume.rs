@@ -1,26 +1,27 @@
 //! `pickglass volume`: a window of the cloth as voxels, or its yarns as geometry.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use pickglass::cloth::{Part, Region};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume::{self, bytes_in_words};
-use pickglass::formats::yarns;
-use pickglass::job::Job;
+use pickglass::formats::{output, yarns};
 use pickglass::still::{self, StillRequest};
 use pickglass::volume::source::VoxelSource;
 use serde_json::{Value, json};
 
-use super::{check_output, note_warnings};
+use super::note_warnings;
 use crate::cli::VolumeArgs;
+use crate::interrupt::Interrupt;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
 use crate::volumes;
 
 pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let path = &args.output.0;
-    check_output(path)?;
+    let inputs = inputs(args);
+    output::check(path, inputs.iter().copied())?;
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let region = region(args, &opened);
@@ -35,7 +36,8 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         ..StillRequest::default()
     };
     let progress = Progress::new();
-    let job = interruptible(&progress);
+    let job = progress.job();
+    Interrupt::watch(&job);
     let there = request.clone().over(&opened.design, &region);
     let prepared = still::prepare(&opened.design, &there, &ExemplarStore::user(), &job);
     progress.finish();
@@ -45,6 +47,9 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let (window, attached) = volumes::voxels(&prepared, asked, path, &request)?;
     let frame = window.frame();
     let plan = volume::plan(&window, path, &attached)?;
+    for (file, _) in &plan.files {
+        output::is_no_input(file, inputs.iter().copied())?;
+    }
     out::note(&volumes::voxels_in_words(&plan, &frame));
     let begun = Instant::now();
     let written = volume::write(&window, path, &attached, &job);
@@ -66,15 +71,11 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     out::say(&wrote(&written.files, written.bytes, seconds))
 }
 
-/// A job that an interrupt cancels, so that gigabytes half-written do not stay behind.
-fn interruptible(progress: &Progress) -> Job {
-    let job = progress.job();
-    let stop = job.clone();
-    // Where no handler can be set an interrupt ends the program at once, as ever.
-    if let Err(error) = ctrlc::set_handler(move || stop.cancel()) {
-        log::warn!("no interrupt handler: {error}");
-    }
-    job
+/// The files that the command reads.
+fn inputs(args: &VolumeArgs) -> Vec<&Path> {
+    let mut inputs = Opened::inputs(&args.design, &args.image);
+    inputs.extend(args.light.file());
+    inputs
 }
 
 /// The rectangle asked for, or one repeat of the weave.
@@ -106,10 +107,15 @@ fn names(files: &[PathBuf]) -> Vec<Value> {
 fn run_yarns(args: &VolumeArgs, opened: &Opened, region: Region) -> anyhow::Result<()> {
     let path = &args.output.0;
     let tubes = volumes::yarns(&opened.design, &region)?;
+    for file in yarns::files(path) {
+        output::is_no_input(&file, inputs(args))?;
+    }
     out::note(&volumes::yarns_in_words(&tubes, path));
     let progress = Progress::new();
     let begun = Instant::now();
-    let written = yarns::write(&opened.design, &tubes, path, &interruptible(&progress));
+    let job = progress.job();
+    Interrupt::watch(&job);
+    let written = yarns::write(&opened.design, &tubes, path, &job);
     progress.finish();
     let written = written?;
     let seconds = begun.elapsed().as_secs_f64();

@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::path::Path;
+use std::time::Instant;
 
 use serde_json::json;
 
@@ -10,6 +11,8 @@ use crate::cli::WindowArgs;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
 use crate::window::{self, NoWindow, Start};
+use pickglass::formats::output;
+use pickglass::render::Backing;
 use pickglass::still::{StillRequest, Stop};
 
 /// Where the picture goes when no window can open.
@@ -65,6 +68,7 @@ fn without_window(opened: &Opened, reason: &str, json: bool) -> anyhow::Result<(
     let request = StillRequest {
         width: 1280,
         height: 720,
+        backing: Backing::Itself,
         stop: Stop {
             seconds: Some(FALLBACK_SECONDS),
             ..Stop::default()
@@ -72,9 +76,7 @@ fn without_window(opened: &Opened, reason: &str, json: bool) -> anyhow::Result<(
         ..StillRequest::default()
     };
     let path = Path::new(FALLBACK_PICTURE);
-    let report = still::render_to(opened, &request, path)?;
-    if json {
-        return out::say_json(&still::report_json(&report));
-    }
-    out::say(&still::describe(&report, path))
+    output::check(path, opened.path.as_deref())?;
+    let (report, interrupted) = still::render_to(opened, &request, path, Instant::now())?;
+    still::tell(&report, path, interrupted, json)
 }

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use egui::{DragValue, RichText};
 use pickglass::design::Design;
+use pickglass::formats::output;
+use pickglass::render::Backing;
 
 use super::task::{Outcome, Running, left};
 use super::toasts::Grade;
@@ -43,6 +45,8 @@ impl Default for Defaults {
 #[derive(Default)]
 pub struct Export {
     pub defaults: Defaults,
+    /// The file that the design is from: not to be written over.
+    pub source: Option<PathBuf>,
     form: Option<Form>,
     browse: dialog::Browse,
     work: Option<Running<Exported>>,
@@ -172,8 +176,19 @@ impl Export {
             }
             Choice::Render => match values::picture_path(form.path.trim()) {
                 Ok(path) => {
-                    if let Some(form) = self.form.take() {
-                        self.begin(ctx, form, path.0);
+                    let inputs = form
+                        .still
+                        .light
+                        .file()
+                        .into_iter()
+                        .chain(self.source.as_deref());
+                    match output::check(&path.0, inputs) {
+                        Err(wrong) => form.wrong = Some(wrong.to_string()),
+                        Ok(()) => {
+                            if let Some(form) = self.form.take() {
+                                self.begin(ctx, form, path.0);
+                            }
+                        }
                     }
                 }
                 Err(wrong) => form.wrong = Some(wrong),
@@ -187,6 +202,8 @@ impl Export {
         still.height = scaled_height(&still, form.width);
         still.width = form.width;
         still.stop = stop;
+        // Kept pictures have no pinholes.
+        still.backing = Backing::Itself;
         let design = form.design;
         let work = Running::start(ctx, "export", move |job, teller| {
             let rendered = still::render_still(&design, &still, job, &mut |pass| {

@@ -11,7 +11,7 @@ use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::pdf::{self, PdfOptions};
-use pickglass::formats::{self, SaveOptions, atomic, jc5, photo};
+use pickglass::formats::{self, SaveOptions, atomic, jc5, output, photo};
 use pickglass::text::with_causes;
 
 use super::dialog;
@@ -172,6 +172,8 @@ pub struct Writing {
     pub design: Arc<Design>,
     /// The id of the state, see `Document::state_id`.
     pub state: u64,
+    /// A file that the design is from, of which it may not hold everything.
+    pub source: Option<PathBuf>,
 }
 
 /// The opening and saving of files.
@@ -369,11 +371,16 @@ impl Files {
     ) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
         let work = move || {
-            let Writing { design, state } = what;
-            let done = match purpose {
+            let Writing {
+                design,
+                state,
+                source,
+            } = what;
+            let may = output::check(&path, source.as_deref()).map_err(|error| error.to_string());
+            let done = may.and_then(|()| match purpose {
                 Purpose::Print => print(&design, &path).map(|()| Vec::new()),
                 _ => formats::save(&design, &path, &options).map_err(|error| error.to_string()),
-            };
+            });
             match done {
                 Ok(_) if purpose == Purpose::Save => FileEvent::Saved { path, state },
                 Ok(lost) => FileEvent::Exported { path, lost },

@@ -329,5 +329,6 @@ fn writing(session: &Session) -> Writing {
     Writing {
         design: session.design(),
         state: session.document.state_id(),
+        source: session.source.clone(),
     }
 }

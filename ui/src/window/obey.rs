@@ -30,6 +30,7 @@ impl App {
             Command::SaveAs => self.save(ctx, true),
             Command::ExportStill => {
                 if let (Some(session), Some(asked)) = (&self.session, self.preview.asked()) {
+                    self.export.source = session.source.clone().or_else(|| session.path.clone());
                     self.export.ask(session.design(), asked.clone());
                 }
             }
@@ -39,6 +40,7 @@ impl App {
                         .map(|rect| [rect.end, rect.pick, rect.ends, rect.picks]);
                     let path = session.file_name("vdb");
                     let shown = self.preview.asked().cloned().unwrap_or_default();
+                    self.volume.source = session.source.clone().or_else(|| session.path.clone());
                     self.volume.ask(session.design(), shown, selected, path);
                 }
             }

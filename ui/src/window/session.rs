@@ -21,6 +21,8 @@ pub struct Session {
     pub document: Document,
     /// The file that *Save* writes; `None` = ask for one.
     pub path: Option<PathBuf>,
+    /// A file of another format that the design is from: never written over.
+    pub source: Option<PathBuf>,
 }
 
 impl Session {
@@ -30,6 +32,7 @@ impl Session {
         Self {
             document: Document::new(Design::clone(&opened.design)),
             path: opened.path.clone().filter(|path| own_format(path)),
+            source: opened.path.clone().filter(|path| !own_format(path)),
         }
     }
 
@@ -38,6 +41,7 @@ impl Session {
         Self {
             document: Document::unsaved(design),
             path: path.filter(|path| own_format(path)),
+            source: None,
         }
     }
 

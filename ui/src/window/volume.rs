@@ -8,6 +8,7 @@ use egui::{DragValue, RichText};
 use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::design::Design;
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
+use pickglass::formats::output;
 use pickglass::formats::volume::{self, Attachment, VolumeFileError, bytes_in_words};
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
@@ -98,6 +99,8 @@ struct Form {
 /// The form and the export under way. Dropping it cancels both.
 #[derive(Default)]
 pub struct VolumeExport {
+    /// The file that the design is from: not to be written over.
+    pub source: Option<PathBuf>,
     form: Option<Form>,
     browse: dialog::Browse,
     work: Option<Running<Exported>>,
@@ -184,7 +187,7 @@ impl VolumeExport {
                 "Volumes and yarns",
                 &["vol", "vdb", "nrrd", "mhd", "tif", "obj", "glb"],
             ),
-            Some(Choice::Plan) => form.plan(ctx),
+            Some(Choice::Plan) => form.plan(ctx, self.source.clone()),
             Some(Choice::Write) => {
                 if let Some(form) = self.form.take()
                     && let Some((wanted, Ok((made, _)))) = form.planned
@@ -227,7 +230,7 @@ impl Form {
     }
 
     /// Has what is to be written made and its bytes counted, on a thread.
-    fn plan(&mut self, ctx: &egui::Context) {
+    fn plan(&mut self, ctx: &egui::Context, source: Option<PathBuf>) {
         if self.planning.is_some() {
             return;
         }
@@ -238,11 +241,18 @@ impl Form {
             .map(|(_, cloth)| Arc::clone(cloth));
         let asked = wanted.clone();
         let work = Running::start(ctx, "volume plan", move |job, _| {
-            if yarns::is_yarns(&asked.path()?) {
-                plan_yarns(&design, &asked)
+            let path = asked.path()?;
+            let inputs = || source.as_deref().into_iter().chain(request.light.file());
+            output::check(&path, inputs()).map_err(|error| error.to_string())?;
+            let (planned, files) = if yarns::is_yarns(&path) {
+                (plan_yarns(&design, &asked)?, yarns::files(&path))
             } else {
-                plan(&design, known, &asked, request, job)
+                plan(&design, known, &asked, request.clone(), job)?
+            };
+            for file in files {
+                output::is_no_input(&file, inputs()).map_err(|error| error.to_string())?;
             }
+            Ok(planned)
         });
         self.planning = work.ok().map(|work| (wanted, work));
     }
@@ -341,14 +351,15 @@ impl Form {
     }
 }
 
-/// Makes the cloth, unless the known one will do, and says what writing it comes to.
+/// Makes the cloth, unless the known one will do, and says what writing it comes to and which
+/// files it makes.
 fn plan(
     design: &Arc<Design>,
     known: Option<Arc<PreparedCloth>>,
     wanted: &Wanted,
     request: StillRequest,
     job: &Job,
-) -> Planned {
+) -> Result<((Made, String), Vec<PathBuf>), String> {
     // Of a very large design only the region is made into cloth.
     let over = request.clone().over(design, &wanted.region());
     let cloth = match known {
@@ -362,7 +373,8 @@ fn plan(
     let (window, attached) = voxels(&cloth, wanted, &path, &request)?;
     let plan = volume::plan(&window, &path, &attached).map_err(|error| error.to_string())?;
     let text = volumes::voxels_in_words(&plan, &window.frame());
-    Ok((Made::Cloth(cloth), text))
+    let files = plan.files.into_iter().map(|file| file.0).collect();
+    Ok(((Made::Cloth(cloth), text), files))
 }
 
 fn plan_yarns(design: &Arc<Design>, wanted: &Wanted) -> Planned {

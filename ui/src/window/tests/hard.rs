@@ -116,6 +116,7 @@ fn a_rescue_writes_what_is_in_no_file_and_nothing_else() {
     let mut session = Session {
         document: Document::new(design()),
         path: Some(file.clone()),
+        source: None,
     };
     assert_eq!(rescue(at(), Some(&session)), Rescued::File(file.clone()));
     let copies = || {
