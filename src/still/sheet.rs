@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::finishing;
 use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, render};
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{StillReport, StillRequest};

@@ -4,7 +4,7 @@
 use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
-use pickglass::render::View;
+use pickglass::render::{Backing, View};
 use pickglass::still::{EffectChoice, Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::text::visible;
 
@@ -439,6 +439,8 @@ impl Preview {
                 elevation: elevation.round() as i16,
             }),
             light: self.light.clone(),
+            // As exported pictures have it.
+            backing: Backing::Itself,
             effects: self.effects.clone(),
             dials: self.dials.clone(),
             ..StillRequest::default()
