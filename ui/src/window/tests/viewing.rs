@@ -4,6 +4,7 @@ use egui::{Key, Modifiers, pos2};
 use egui_kittest::kittest::Queryable;
 
 use super::{build, builder, says, shows, wait_for};
+use crate::window::worker::Quality;
 
 #[test]
 fn a_design_is_shown_and_refines() {
@@ -15,6 +16,27 @@ fn a_design_is_shown_and_refines() {
     assert!(shows(&window, "Drawdown of Oxford"));
     assert!(says(&window, "4 ends × 2 picks"));
     assert!(says(&window, " spp · "));
+}
+
+#[test]
+fn refining_waits_while_the_window_is_minimised_and_ends_where_the_person_says() {
+    let mut window = build(builder(), Some("oxford"));
+    let mut minimised = |minimised: bool| {
+        let input = window.input_mut();
+        let root = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+        (root.minimized, root.occluded) = (Some(minimised), Some(false));
+        window.step();
+        window.state().preview.is_hidden()
+    };
+    assert!(minimised(true));
+    assert!(!minimised(false));
+    window.get_by_label("View").click();
+    window.run_steps(3);
+    window.get_by_label_contains("Refine until").click();
+    window.run_steps(3);
+    window.get_by_label("fine: error 1 %").click();
+    window.run_steps(3);
+    assert_eq!(window.state().preview.quality, Quality::Fine);
 }
 
 #[test]
