@@ -1,12 +1,21 @@
 //! A design under edit: its present state, its drawdown, and the way back.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::change::Change;
 use super::edits::Edit;
 use super::error::EditError;
 use super::history::{Entry, History, State};
 use crate::design::{Design, WeavePattern};
+
+/// The next revision of any document of this process. What is worked out of a document is
+/// kept by its revision: two documents that shared one would pass for each other.
+static NEXT_REVISION: AtomicU64 = AtomicU64::new(1);
+
+fn next_revision() -> u64 {
+    NEXT_REVISION.fetch_add(1, Ordering::Relaxed)
+}
 
 /// A gesture that is being made: what it is called and where it began.
 #[derive(Debug, Clone)]
@@ -39,7 +48,7 @@ impl Document {
             present,
             gesture: None,
             saved: Some(0),
-            revision: 0,
+            revision: next_revision(),
         }
     }
 
@@ -61,7 +70,8 @@ impl Document {
         &self.present.drawdown
     }
 
-    /// A number that is another after every change, undo included.
+    /// A number that is another after every change, undo included, and another in every
+    /// document: no two states of this process share one, unless one is a copy of the other.
     pub fn revision(&self) -> u64 {
         self.revision
     }
@@ -86,7 +96,7 @@ impl Document {
             return Ok(change);
         }
         self.present = after;
-        self.revision += 1;
+        self.revision = next_revision();
         if self.gesture.is_none() {
             self.history.push(name.to_owned(), self.present.clone());
         }
@@ -219,7 +229,7 @@ impl Document {
     fn show(&mut self, state: State) -> Change {
         let change = Change::between(&self.present, &state);
         self.present = state;
-        self.revision += 1;
+        self.revision = next_revision();
         change
     }
 }

@@ -203,3 +203,25 @@ fn crossings_of_another_design_are_refused() {
     );
     assert!(!document.is_modified());
 }
+
+#[test]
+fn no_two_states_of_two_documents_share_a_revision() {
+    let design = || design(Structure::Weave(Filled::once("plain").unwrap()));
+    let mut seen = std::collections::BTreeSet::new();
+    for _ in 0..3 {
+        let mut document = Document::new(design());
+        assert!(seen.insert(document.revision()));
+        document
+            .apply(paint(&document, &[(1, 0)], true))
+            .expect("painted");
+        assert!(seen.insert(document.revision()));
+        document.undo();
+        assert!(seen.insert(document.revision()));
+        // A copy is the same until it is changed.
+        let mut copy = document.clone();
+        assert_eq!(copy.revision(), document.revision());
+        copy.apply(Edit::Invert).expect("inverted");
+        document.apply(Edit::Invert).expect("inverted");
+        assert!(seen.insert(copy.revision()) && seen.insert(document.revision()));
+    }
+}

@@ -51,6 +51,7 @@ impl App {
             self.files.open_reference(&self.ctx, image);
         }
         self.preview.forget();
+        self.panes.forget();
         self.asking.derive_always = false;
     }
 

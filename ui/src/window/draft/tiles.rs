@@ -80,9 +80,10 @@ pub struct Tiles {
 }
 
 impl Tiles {
-    /// Forgets everything: another document is open.
+    /// Forgets everything, and what is being made: another document is open.
     pub fn clear(&mut self) {
         self.tiles.clear();
+        self.maker = None;
     }
 
     /// Makes patches of what changed, and marks the rest to be made again.

@@ -53,6 +53,11 @@ impl Floats {
 }
 
 impl Floats {
+    /// Forgets what was found.
+    pub fn forget(&mut self) {
+        self.found = Later::default();
+    }
+
     /// Shows the list.
     pub fn show(
         &mut self,

@@ -107,6 +107,17 @@ impl Panes {
 }
 
 impl Panes {
+    /// Forgets what was shown and typed of the design before: another one is open. Units and
+    /// limits that were chosen stay, and so does a picture that was read from a file.
+    pub fn forget(&mut self) {
+        self.section.forget();
+        self.floats.forget();
+        self.yarns.forget();
+        self.colourways = Colourways::default();
+        self.sett.forget();
+        self.posterise.forget();
+    }
+
     /// Reads a picture to be posterised.
     pub fn posterise(&mut self, ctx: &egui::Context, path: &Path) {
         self.posterise.read_file(ctx, path);

@@ -54,10 +54,23 @@ struct Picture {
     source: Arc<SourceImage>,
     /// Another number for every picture.
     number: u64,
+    /// It is the open design's own.
+    of_design: bool,
     texture: TextureHandle,
 }
 
 impl Posterise {
+    /// Forgets the design before, and its picture; one that was read from a file stays.
+    pub fn forget(&mut self) {
+        self.regions = RegionList::default();
+        if (self.picture.as_ref()).is_some_and(|picture| picture.of_design) {
+            *self = Self {
+                seen: self.seen,
+                ..Self::default()
+            };
+        }
+    }
+
     /// Shows the pane.
     pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
         self.poll(ui.ctx());
@@ -68,7 +81,7 @@ impl Posterise {
         if self.picture.is_none()
             && let Some(source) = regions.and_then(Regions::source)
         {
-            self.take(ui.ctx(), Arc::clone(source));
+            self.take(ui.ctx(), Arc::clone(source), true);
             self.settings.colours = regions.map_or(8, |r| r.palette().len() as u16).clamp(2, 24);
             self.settings.ends = Some(document.design().ends());
             self.settings.picks = Some(document.design().picks());
@@ -134,7 +147,7 @@ impl Posterise {
             Outcome::Ready(Ok(photo)) => {
                 self.reading = None;
                 self.problem = photo.warnings.first().cloned();
-                self.take(ctx, Arc::new(photo.source));
+                self.take(ctx, Arc::new(photo.source), false);
             }
             Outcome::Ready(Err(problem)) => {
                 self.reading = None;
@@ -163,8 +176,8 @@ impl Posterise {
         self.reading = Task::start(ctx, "picture", work).ok();
     }
 
-    /// Takes a picture to be posterised.
-    pub fn take(&mut self, ctx: &egui::Context, source: Arc<SourceImage>) {
+    /// Takes a picture to be posterised: the open design's own, or another.
+    fn take(&mut self, ctx: &egui::Context, source: Arc<SourceImage>, of_design: bool) {
         let image = shrunk(&source, SHOWN);
         self.picture = Some(Picture {
             source,
@@ -172,6 +185,7 @@ impl Posterise {
                 .picture
                 .as_ref()
                 .map_or(0, |picture| picture.number + 1),
+            of_design,
             texture: ctx.load_texture("picture", image, TextureOptions::LINEAR),
         });
     }
@@ -376,7 +390,7 @@ impl Posterise {
     pub fn take_small(&mut self, ctx: &egui::Context, source: SourceImage) {
         self.settings.ends = Some(64);
         self.settings.colours = 3;
-        self.take(ctx, Arc::new(source));
+        self.take(ctx, Arc::new(source), false);
     }
 }
 

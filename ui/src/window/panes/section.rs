@@ -38,6 +38,12 @@ impl Default for Section {
 }
 
 impl Section {
+    /// Forgets the cut, and where it was.
+    pub fn forget(&mut self) {
+        self.at = (0, 0);
+        self.known = None;
+    }
+
     /// Follows the pointer over another view.
     pub fn follow(&mut self, crossing: Option<(i64, i64)>) {
         if let Some(crossing) = crossing.filter(|_| self.follows) {

@@ -47,6 +47,12 @@ impl SettPane {
 }
 
 impl SettPane {
+    /// Forgets what was typed for the design before and what was worked out of it.
+    pub fn forget(&mut self) {
+        self.typed = None;
+        self.take_up = Later::default();
+    }
+
     /// Shows the fields.
     pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
         let (design, drawdown) = (

@@ -43,6 +43,15 @@ struct Stripes {
 }
 
 impl Yarns {
+    /// Forgets all of the design before but the units.
+    pub fn forget(&mut self) {
+        *self = Self {
+            unit: self.unit,
+            plies: self.plies,
+            ..Self::default()
+        };
+    }
+
     /// Shows the list.
     pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
         self.plies = self.plies.max(1);

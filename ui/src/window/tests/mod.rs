@@ -7,6 +7,7 @@ mod files;
 mod flow;
 mod hard;
 mod keys;
+mod kinds;
 mod large;
 mod opening;
 mod painting;
