@@ -22,6 +22,7 @@
 //! | `floats` | what a designer checks first |
 //! | `reach` | the floats where one looks |
 //! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
+//! | `same_cloth` | whether two designs weave the same cloth |
 //! | `swatch` | the drawdown as pixels, near and far |
 //! | `colour` | how different two colours look |
 
@@ -39,6 +40,7 @@ pub mod library;
 mod maps;
 mod pattern;
 mod reach;
+mod same_cloth;
 mod sett;
 mod source;
 pub mod stripes;

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use super::bricks::{BrickVolume, PackedVoxel};
 use super::lobes::Lobes;
+use super::room::{ENDING, USUAL_LIMIT};
 use super::set::{ExemplarError, ExemplarSet, Pair, build_exemplar};
 use super::voxelise::VoxelGrid;
 use crate::job::{Cancelled, Job};
@@ -24,14 +25,13 @@ use crate::synthesis::Catalogue;
 /// Changes whenever exemplars built from the same recipe change.
 const FORMAT: u32 = 6;
 const MAGIC: &[u8; 8] = b"pickglas";
-/// Bytes that the folder may hold.
-const LIMIT: u64 = 4 << 30;
 
 /// Where exemplars come from: the user's cache folder, or built on the spot.
 #[derive(Debug, Clone)]
 pub struct ExemplarStore {
-    folder: Option<PathBuf>,
-    limit: u64,
+    pub(super) folder: Option<PathBuf>,
+    /// Bytes that the folder may hold where it does not say itself.
+    pub(super) usual_limit: u64,
 }
 
 impl ExemplarStore {
@@ -45,15 +45,15 @@ impl ExemplarStore {
             });
         Self {
             folder,
-            limit: LIMIT,
+            usual_limit: USUAL_LIMIT,
         }
     }
 
-    /// A store in a folder of at most `limit` bytes.
+    /// A store in a folder of at most `limit` bytes, unless the folder says another limit.
     pub fn at(folder: impl Into<PathBuf>, limit: u64) -> Self {
         Self {
             folder: Some(folder.into()),
-            limit,
+            usual_limit: limit,
         }
     }
 
@@ -61,7 +61,7 @@ impl ExemplarStore {
     pub fn none() -> Self {
         Self {
             folder: None,
-            limit: 0,
+            usual_limit: 0,
         }
     }
 
@@ -145,31 +145,9 @@ impl ExemplarStore {
             if let Err(error) = write(folder, path, &volume) {
                 log::warn!("exemplars are not kept in {}: {error}", folder.display());
             }
-            self.make_room(path);
+            self.make_room(Some(path));
         }
         Ok(volume)
-    }
-
-    /// Removes the least recently used files beyond the limit, never `keep`.
-    fn make_room(&self, keep: &Path) {
-        let Some(Ok(entries)) = self.folder.as_ref().map(fs::read_dir) else {
-            return;
-        };
-        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries
-            .flatten()
-            .filter(|entry| entry.path().extension().is_some_and(|e| e == "exemplars"))
-            .filter_map(|entry| {
-                let metadata = entry.metadata().ok()?;
-                Some((metadata.modified().ok()?, metadata.len(), entry.path()))
-            })
-            .collect();
-        files.sort();
-        let mut total: u64 = files.iter().map(|file| file.1).sum();
-        for (_, length, path) in files {
-            if total > self.limit && path != keep && fs::remove_file(&path).is_ok() {
-                total -= length;
-            }
-        }
     }
 }
 
@@ -186,7 +164,7 @@ fn file_name(catalogue: &Catalogue, pair: &Pair, grid: &VoxelGrid, exemplar: usi
         }
     }
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-    format!("{}.exemplars", &hasher.finalize().to_hex()[..32])
+    format!("{}.{ENDING}", &hasher.finalize().to_hex()[..32])
 }
 
 /// Writes through a hasher.
@@ -303,7 +281,7 @@ mod tests {
     #[test]
     fn an_exemplar_comes_back_as_it_was_and_damage_is_found() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ExemplarStore::at(folder.path(), LIMIT);
+        let store = ExemplarStore::at(folder.path(), USUAL_LIMIT);
         let (_, pair, _) = small();
         let built = get(&store, &pair);
         assert!(built.volumes[1].is_none());
@@ -345,7 +323,7 @@ mod tests {
     #[test]
     fn a_folder_that_cannot_be_written_is_no_error() {
         let (_, pair, _) = small();
-        let set = get(&ExemplarStore::at("/proc/none", LIMIT), &pair);
+        let set = get(&ExemplarStore::at("/proc/none", USUAL_LIMIT), &pair);
         assert!(set.volumes[0].is_some());
     }
 }
