@@ -8,6 +8,7 @@ use super::app::App;
 use super::asking::Next;
 use super::cloth::sheet::Kind as SheetKind;
 use super::panes::Pane;
+use super::settings_form::SettingsForm;
 use crate::command_table::Command;
 
 impl App {
@@ -30,7 +31,8 @@ impl App {
             Command::SaveAs => self.save(ctx, true),
             Command::ExportStill => {
                 if let (Some(session), Some(asked)) = (&self.session, self.preview.asked()) {
-                    self.export.ask(session.design(), asked.clone());
+                    let measured = self.preview.pane.measured();
+                    self.export.ask(session.design(), asked.clone(), measured);
                 }
             }
             Command::ExportVolume => {
@@ -66,6 +68,7 @@ impl App {
                 ctx.set_theme(theme);
             }
             Command::Palette => self.palette.open(),
+            Command::Settings => self.settings_form = Some(SettingsForm::new(&self.store)),
             Command::Shortcuts => self.show_shortcuts = true,
             Command::Show(pane) => self.layout.bring(pane),
             Command::ResetLayout => self.layout.reset(),

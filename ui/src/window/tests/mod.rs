@@ -2,6 +2,7 @@
 //! on a software adapter.
 
 mod colours;
+mod fields;
 mod files;
 mod flow;
 mod hard;
@@ -10,6 +11,7 @@ mod large;
 mod opening;
 mod painting;
 mod pictures;
+mod slow_frames;
 mod states;
 mod times;
 mod viewing;
