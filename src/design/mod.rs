@@ -23,6 +23,7 @@
 //! | `floats` | what a designer checks first |
 //! | `reach` | the floats where one looks |
 //! | `checks` | what a mill checks: ties, take-up, heddles, yarn needed |
+//! | `same_cloth` | whether two designs weave the same cloth |
 //! | `swatch` | the drawdown as pixels, near and far |
 //! | `colour` | how different two colours look |
 
@@ -41,6 +42,7 @@ mod lying;
 mod maps;
 mod pattern;
 mod reach;
+mod same_cloth;
 mod sett;
 mod source;
 pub mod stripes;

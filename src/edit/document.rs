@@ -82,11 +82,7 @@ impl Document {
     /// [`EditError`]; the document is then as it was.
     pub fn apply(&mut self, edit: Edit) -> Result<Change, EditError> {
         let name = edit.name();
-        let mut work = Work {
-            design: Design::clone(&self.present.design),
-            drawdown: WeavePattern::clone(&self.present.drawdown),
-        };
-        work.apply(edit)?;
+        let work = self.done(edit)?;
         let after = State {
             design: Arc::new(work.design),
             drawdown: Arc::new(work.drawdown),
@@ -101,6 +97,23 @@ impl Document {
             self.history.push(name.to_owned(), self.present.clone());
         }
         Ok(change)
+    }
+
+    /// Whether an edit can be done; the document stays as it is.
+    ///
+    /// # Errors
+    /// As [`Document::apply`].
+    pub fn check(&self, edit: Edit) -> Result<(), EditError> {
+        self.done(edit).map(drop)
+    }
+
+    fn done(&self, edit: Edit) -> Result<Work, EditError> {
+        let mut work = Work {
+            design: Design::clone(&self.present.design),
+            drawdown: WeavePattern::clone(&self.present.drawdown),
+        };
+        work.apply(edit)?;
+        Ok(work)
     }
 
     /// Begins a gesture: what [`Document::apply`] does until [`Document::finish`] is one

@@ -14,6 +14,7 @@ pub mod hairs;
 mod heights;
 mod lobes;
 mod majorants;
+mod room;
 mod set;
 mod store;
 pub mod voxelise;
@@ -24,6 +25,7 @@ pub use direction::{decode_direction, encode_direction};
 pub use lobes::Lobes;
 pub(crate) use lobes::bits_of;
 pub use majorants::{Allowance, BlockMajorants, CELL};
+pub use room::{LIMITS, USUAL_LIMIT};
 pub use set::{
     COARSEST_LEVEL, ExemplarError, ExemplarSet, Pair, bytes_at_most, common_grid, layout, quantise,
 };

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use super::bricks::{BrickVolume, PackedVoxel};
 use super::lobes::Lobes;
+use super::room::{ENDING, USUAL_LIMIT};
 use super::set::{ExemplarError, ExemplarSet, Pair, build_exemplar};
 use super::voxelise::VoxelGrid;
 use crate::formats::atomic;
@@ -27,14 +28,13 @@ use crate::synthesis::Catalogue;
 /// Changes whenever exemplars built from the same recipe change.
 const FORMAT: u32 = 7;
 const MAGIC: &[u8; 8] = b"pickglas";
-/// Bytes that the folder may hold.
-const LIMIT: u64 = 4 << 30;
 
 /// Where exemplars come from: the user's cache folder, or built on the spot.
 #[derive(Debug, Clone)]
 pub struct ExemplarStore {
-    folder: Option<PathBuf>,
-    limit: u64,
+    pub(super) folder: Option<PathBuf>,
+    /// Bytes that the folder may hold where it does not say itself.
+    pub(super) usual_limit: u64,
 }
 
 impl ExemplarStore {
@@ -43,15 +43,15 @@ impl ExemplarStore {
     pub fn user() -> Self {
         Self {
             folder: user_folder(std::env::var_os("PICKGLASS_CACHE")),
-            limit: LIMIT,
+            usual_limit: USUAL_LIMIT,
         }
     }
 
-    /// A store in a folder of at most `limit` bytes.
+    /// A store in a folder of at most `limit` bytes, unless the folder says another limit.
     pub fn at(folder: impl Into<PathBuf>, limit: u64) -> Self {
         Self {
             folder: Some(folder.into()),
-            limit,
+            usual_limit: limit,
         }
     }
 
@@ -59,7 +59,7 @@ impl ExemplarStore {
     pub fn none() -> Self {
         Self {
             folder: None,
-            limit: 0,
+            usual_limit: 0,
         }
     }
 
@@ -143,39 +143,14 @@ impl ExemplarStore {
             if let Err(error) = write(folder, path, &key, &volume) {
                 log::warn!("exemplars are not kept in {}: {error}", folder.display());
             }
-            self.make_room(path);
+            self.make_room(Some(path));
         }
         Ok(volume)
-    }
-
-    /// Removes the least recently used files beyond the limit, never `keep`.
-    fn make_room(&self, keep: &Path) {
-        if let Some(folder) = &self.folder {
-            atomic::sweep(folder);
-        }
-        let Some(Ok(entries)) = self.folder.as_ref().map(fs::read_dir) else {
-            return;
-        };
-        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries
-            .flatten()
-            .filter(|entry| entry.path().extension().is_some_and(|e| e == "exemplars"))
-            .filter_map(|entry| {
-                let metadata = entry.metadata().ok()?;
-                Some((metadata.modified().ok()?, metadata.len(), entry.path()))
-            })
-            .collect();
-        files.sort();
-        let mut total: u64 = files.iter().map(|file| file.1).sum();
-        for (_, length, path) in files {
-            if total > self.limit && path != keep && fs::remove_file(&path).is_ok() {
-                total -= length;
-            }
-        }
     }
 }
 
 fn file_name(key: &blake3::Hash) -> String {
-    format!("{}.exemplars", &key.to_hex()[..32])
+    format!("{}.{ENDING}", &key.to_hex()[..32])
 }
 
 /// The hash of everything that an exemplar is made from.
@@ -333,7 +308,7 @@ mod tests {
     #[test]
     fn an_exemplar_comes_back_as_it_was_and_damage_is_found() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ExemplarStore::at(folder.path(), LIMIT);
+        let store = ExemplarStore::at(folder.path(), USUAL_LIMIT);
         let (_, pair, _) = small();
         let built = get(&store, &pair);
         assert!(built.volumes[1].is_none());
@@ -367,7 +342,7 @@ mod tests {
     #[test]
     fn case_20_exchanged_files_are_not_believed() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ExemplarStore::at(folder.path(), LIMIT);
+        let store = ExemplarStore::at(folder.path(), USUAL_LIMIT);
         let (_, pair, _) = small();
         let other = Pair {
             warp: YarnRecipe::family(Family::Linen, 0.3),
@@ -395,7 +370,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let left = folder.path().join(".pickglass-gone.tmp");
         fs::write(&left, b"half").unwrap();
-        get(&ExemplarStore::at(folder.path(), LIMIT), &small().1);
+        get(&ExemplarStore::at(folder.path(), USUAL_LIMIT), &small().1);
         assert!(!left.exists());
     }
 
@@ -420,7 +395,7 @@ mod tests {
     #[test]
     fn a_folder_that_cannot_be_written_is_no_error() {
         let (_, pair, _) = small();
-        let set = get(&ExemplarStore::at("/proc/none", LIMIT), &pair);
+        let set = get(&ExemplarStore::at("/proc/none", USUAL_LIMIT), &pair);
         assert!(set.volumes[0].is_some());
     }
 }

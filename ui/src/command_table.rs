@@ -70,6 +70,7 @@ pub enum Command {
     ExportVolume,
     ExportDraft,
     Print,
+    Settings,
     Quit,
     Undo,
     Redo,
@@ -258,6 +259,7 @@ pub const TABLE: &[Row] = &[
     row(Command::ExportVolume, Menu::File, "Export volume…", "The selected crossings as voxels; says the bytes first", &[]),
     row(Command::ExportDraft, Menu::File, "Export draft…", "Write a WIF or a loom image; says what has no place in it", &[ctrl_shift(Key::E)]),
     row(Command::Print, Menu::File, "Print to PDF…", "Draft with its numbers, yarns, heddles, and the cloth at true size", &[ctrl(Key::P)]),
+    row(Command::Settings, Menu::File, "Settings…", "How much of the disk built exemplars may take; empty what is kept", &[ctrl(Key::Comma)]),
     apart(row(Command::Quit, Menu::File, "Quit", "Close the window", &[ctrl(Key::Q)])),
 
     row(Command::Undo, Menu::Edit, "Undo", "Take back the last change", &[ctrl(Key::Z), plain(Key::Z)]),
@@ -338,7 +340,7 @@ pub const TABLE: &[Row] = &[
     row(Command::Pan(Toward::Down), Menu::Cloth, "Look further down", "Along the cloth", &[ctrl_shift(Key::ArrowDown)]),
     apart(row(Command::Glass, Menu::Cloth, "Pick glass", "Ten times closer at the pointer, or in the middle, while the key is held over the cloth", &[plain(Key::Q)])),
 
-    row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face, to true scale", &[ctrl(Key::Num1)]),
+    row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face: one repeat, or 20 cm where it is wider", &[ctrl(Key::Num1)]),
     row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", &[ctrl(Key::Num2)]),
     row(Command::Look(View::Close), Menu::View, "Close", "A few threads, as under a hand lens", &[ctrl(Key::Num3)]),
     row(Command::Look(View::Oblique), Menu::View, "Oblique", "From the lower edge, 45° above the cloth", &[ctrl(Key::Num4)]),

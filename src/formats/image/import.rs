@@ -137,6 +137,7 @@ fn picture(colours: &Colours, name: &str) -> ImageError {
             "reduce it with `pickglass posterize {typed} -o DESIGN.ron`, or say what it is with \
              --as weave or --as artwork"
         ),
+        picture: Some(count),
     }
 }
 

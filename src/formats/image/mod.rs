@@ -59,6 +59,9 @@ pub struct ImageError {
     pub problem: String,
     /// What to do about it.
     pub remedy: String,
+    /// Of an image that is a picture, to be posterised first: how many colours it has, in
+    /// words.
+    pub picture: Option<String>,
 }
 
 /// What is wrong with an image, before the file's name is known.
@@ -90,6 +93,7 @@ impl Fault {
             file: file.to_owned(),
             problem: self.problem,
             remedy: self.remedy.to_owned(),
+            picture: None,
         }
     }
 }

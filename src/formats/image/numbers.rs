@@ -17,8 +17,9 @@ impl Numbers {
     pub(super) fn of(raster: &Raster, colours: &Colours, key: Key) -> Result<Self, Fault> {
         if key == Key::Index {
             let Some(counts) = raster.index_counts() else {
-                let problem = "expected palette indices (--key index), found true colours";
-                return Err(Fault::new(problem, "use --key rgb, or save it indexed"));
+                let problem = "expected places in a palette, found true colours";
+                let remedy = "tell its parts apart by their colour, or save it indexed";
+                return Err(Fault::new(problem, remedy));
             };
             let used = counts
                 .iter()
@@ -35,7 +36,7 @@ impl Numbers {
             let problem = format!("expected at most {MAX_COLOURS} flat colours, found more");
             return Err(Fault {
                 problem,
-                remedy: "reduce its colours with `pickglass posterize`, or save it indexed",
+                remedy: "posterise it, or save it indexed",
             });
         };
         let mut sorted: Vec<Srgb> = few.iter().map(|entry| entry.0).collect();

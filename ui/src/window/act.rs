@@ -4,6 +4,7 @@ use pickglass::edit::{Change, Edit, EditError, moved};
 
 use super::action::{Action, Button, Mark};
 use super::app::App;
+use super::draft::HeldBack;
 use super::panes::Pane;
 use super::session::Session;
 use super::toasts::Grade;
@@ -69,11 +70,12 @@ impl App {
         }
     }
 
-    /// Ends the gesture, and asks about a stroke that was held back.
+    /// Ends the gesture, and derives the draft of a stroke that was held back, or asks
+    /// about it.
     pub(super) fn finish(&mut self) {
-        if let Some((cells, warp_up)) = self.draft.held_back.take() {
+        if let Some(held) = self.draft.held_back.take() {
             self.rework(|session| Some(session.document.cancel()));
-            self.edit(Edit::Paint { cells, warp_up });
+            self.edit(held.into_edit());
             return;
         }
         if let Some(session) = &mut self.session {
@@ -94,18 +96,27 @@ impl App {
 
     /// Does an edit, or asks what to do instead where it is refused.
     pub(super) fn edit(&mut self, edit: Edit) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let derives = self.asking.derive_always
+            && super::draft::is_shaft_draft(&session.document)
+            && matches!(
+                edit,
+                Edit::Paint { .. } | Edit::Place { .. } | Edit::Flip(_)
+            );
+        // Another draft has other shafts, and moves the drawdown: not while one draws on it.
+        if derives && self.hold_back(&EditError::ShaftDraft, &edit) {
+            return;
+        }
         let Some(session) = &mut self.session else {
             return;
         };
-        let edit = match edit {
-            Edit::Paint { .. } | Edit::Place { .. } | Edit::Flip(_)
-                if self.asking.derive_always && super::draft::is_shaft_draft(&session.document) =>
-            {
-                Edit::DeriveDraft {
-                    after: Some(Box::new(edit)),
-                }
-            }
-            other => other,
+        let edit = match derives {
+            true => Edit::DeriveDraft {
+                after: Some(Box::new(edit)),
+            },
+            false => edit,
         };
         // Only what a question could be about is kept for it.
         let refused = matches!(
@@ -113,8 +124,14 @@ impl App {
             Edit::Paint { .. } | Edit::Place { .. } | Edit::Flip(_) | Edit::PaintRegion { .. }
         )
         .then(|| edit.clone());
+        let another = matches!(edit, Edit::Replace(_));
         match session.document.apply(edit) {
-            Ok(change) => self.changed(&change),
+            Ok(change) => {
+                if another {
+                    self.preview.look_anew();
+                }
+                self.changed(&change);
+            }
             Err(error) => match refused {
                 Some(edit) if self.hold_back(&error, &edit) => {}
                 refused => self.refused(&error, refused),
@@ -123,22 +140,16 @@ impl App {
     }
 
     /// Keeps what a stroke painted on the drawdown of a draft until it ends, so that the
-    /// question is about the whole stroke; false where it is to be asked at once.
+    /// draft is derived, or the question asked, once for the whole stroke; false where that
+    /// is to be done at once.
     fn hold_back(&mut self, error: &EditError, edit: &Edit) -> bool {
         let stroke = (self.session.as_ref()).is_some_and(|session| session.document.in_gesture());
-        let (EditError::ShaftDraft, true, Edit::Paint { cells, warp_up }) = (error, stroke, edit)
-        else {
+        if !stroke || *error != EditError::ShaftDraft {
             return false;
-        };
-        match &mut self.draft.held_back {
-            Some((held, up)) if up == warp_up => held.extend(cells),
-            Some(_) => {
-                self.draft.held_back = None;
-                return false;
-            }
-            none => *none = Some((cells.clone(), *warp_up)),
         }
-        true
+        let before = self.draft.held_back.take();
+        self.draft.held_back = HeldBack::of(edit, before);
+        self.draft.held_back.is_some()
     }
 
     pub(super) fn refused(&mut self, error: &EditError, edit: Option<Edit>) {

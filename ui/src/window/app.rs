@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use egui::{CentralPanel, Frame, Id, Panel, Rect, ViewportCommand};
 use pickglass::edit::{Document, recovery};
+use pickglass::exemplar::ExemplarStore;
 use pickglass::text::visible;
 
 use super::action::Action;
@@ -26,10 +27,12 @@ use super::panes::{Pane, Panes};
 use super::preview::{Preview, PreviewSettings};
 use super::session::Session;
 use super::settings::{Settings, SettingsFile};
+use super::settings_form::SettingsForm;
 use super::start::StartPage;
 use super::status::{self, Cancel, Status};
 use super::toasts::{Grade, Toasts};
 use super::tools;
+use super::typing::Keys;
 use super::volume::VolumeExport;
 use crate::opened::Opened;
 use crate::tokens;
@@ -62,6 +65,10 @@ pub struct App {
     pub(super) settings: Settings,
     pub(super) settings_file: SettingsFile,
     pub(super) show_shortcuts: bool,
+    pub(super) settings_form: Option<SettingsForm>,
+    /// Where exemplars are kept.
+    pub(super) store: ExemplarStore,
+    keys: Keys,
     /// The crossing of the endless cloth under the pointer, in whichever view.
     pub(super) hover: Option<(i64, i64)>,
     /// The window may close: nothing is unsaved, or the person said so.
@@ -90,6 +97,7 @@ impl App {
         if settings.light {
             ctx.set_theme(egui::Theme::Light);
         }
+        let store = options.preview.store.clone();
         let mut app = Self {
             session: None,
             draft: DraftPane::of(&settings),
@@ -108,6 +116,9 @@ impl App {
             settings,
             settings_file: options.settings,
             show_shortcuts: false,
+            settings_form: None,
+            store,
+            keys: Keys::default(),
             hover: None,
             may_close: false,
             told_title: String::new(),
@@ -401,10 +412,12 @@ impl App {
         self.pick_up(&ctx);
         // What is asked is answered before anything else is done.
         let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
-        while !asked && let Some(command) = menu::pressed(&ctx) {
+        self.keys.begin(&ctx);
+        while !asked && let Some((command, place)) = menu::pressed(&ctx) {
             self.obey(&ctx, command);
             // Keys pressed in one slow frame are all meant.
             if !menu::goes_on(command) {
+                self.keys.put_off(&ctx, place);
                 break;
             }
         }
@@ -435,6 +448,8 @@ impl App {
         if self.show_shortcuts {
             self.show_shortcuts = menu::shortcuts_ui(&ctx);
         }
+        let form = self.settings_form.take();
+        self.settings_form = form.and_then(|mut form| form.show(&ctx).then_some(form));
         self.act(&ctx, actions);
         self.autosave.note(self.session.as_ref());
         self.count_frame(&ctx);

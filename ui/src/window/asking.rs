@@ -80,7 +80,7 @@ impl Asking {
         let question = self.question.as_mut()?;
         let mut answer = None;
         let mut close = false;
-        let modal = dialog::modal(ctx, "question").show(ctx, |ui| {
+        let shown = dialog::show(ctx, "question", |ui| {
             ui.set_width(tokens::TOAST_WIDTH);
             match question {
                 Question::Unsaved(next) => unsaved_ui(ui, name, next, &mut answer, &mut close),
@@ -95,7 +95,7 @@ impl Asking {
                 },
             }
         });
-        if answer.is_some() || close || modal.should_close() {
+        if answer.is_some() || close || shown.escaped {
             self.question = None;
         }
         answer

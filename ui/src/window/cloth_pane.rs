@@ -9,6 +9,7 @@ use egui::{
 };
 
 use super::focus;
+use super::pace::Measured;
 use super::view::{ClothView, scale_bar};
 use super::worker::{Fibres, Picture};
 use crate::tokens::{self, Palette};
@@ -47,6 +48,14 @@ impl ClothPane {
     /// Forgets its pictures.
     pub fn forget(&mut self) {
         self.shown = None;
+    }
+
+    /// How the picture that is shown was traced, if it was.
+    pub fn measured(&self) -> Option<Measured> {
+        let shown = self.shown.as_ref()?;
+        let size = shown.image.size;
+        let pixels = size[0] as f64 * size[1] as f64;
+        Measured::of(pixels, shown.spp, shown.seconds, shown.error)
     }
 
     /// Takes a newer picture.

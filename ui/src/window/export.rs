@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{DragValue, RichText};
+use egui::{ComboBox, DragValue, RichText};
 use pickglass::design::Design;
 use pickglass::formats::output;
 use pickglass::render::Backing;
 
-use super::task::{Outcome, Running, left};
-use super::toasts::Grade;
-use super::{dialog, icons};
+use super::pace::{self, Measured};
+use super::task::{Outcome, Running};
+use super::{dialog, typing};
 use crate::tokens::{self, Palette};
 use crate::values;
 use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
@@ -23,23 +23,22 @@ pub enum Exported {
     Failed(String),
 }
 
-/// What the form starts with.
+/// What the form starts with, where that is not what the machine can do.
+#[derive(Default)]
 pub struct Defaults {
-    pub width: u32,
-    pub seconds: f64,
+    pub width: Option<u32>,
+    pub seconds: Option<f64>,
     /// `None` = named after the design.
     pub path: Option<PathBuf>,
 }
 
-impl Default for Defaults {
-    fn default() -> Self {
-        Self {
-            width: 2560,
-            seconds: 60.0,
-            path: None,
-        }
-    }
-}
+/// What may lie behind the cloth.
+const BACKINGS: [(Backing, &str); 4] = [
+    (Backing::Itself, "more of the cloth itself"),
+    (Backing::White, "white paper"),
+    (Backing::Black, "something black"),
+    (Backing::None, "nothing: the picture can be seen through"),
+];
 
 /// The export form and the export under way.
 #[derive(Default)]
@@ -61,6 +60,8 @@ struct Form {
     samples: u32,
     /// Per cent.
     error: f64,
+    backing: Backing,
+    measured: Option<Measured>,
     path: String,
     wrong: Option<String>,
 }
@@ -92,8 +93,8 @@ impl Form {
     }
 }
 
-/// How far a picture is, in words.
-fn refined(stop: &Stop, spp: u32, seconds: f64, error: Option<f64>) -> String {
+/// How far a picture is, in words, and the seconds that refining will still take.
+fn refined(stop: &Stop, spp: u32, seconds: f64, error: Option<f64>) -> (String, Option<f64>) {
     let share = match (stop.seconds, stop.spp, stop.error, error) {
         (Some(all), ..) => seconds / all,
         (None, Some(all), ..) => f64::from(spp) / f64::from(all.max(1)),
@@ -101,25 +102,29 @@ fn refined(stop: &Stop, spp: u32, seconds: f64, error: Option<f64>) -> String {
         (None, None, Some(wanted), Some(now)) => (wanted / now).powi(2),
         _ => 0.0,
     };
-    let left = left(seconds, share.min(1.0));
+    let left = seconds * (1.0 - share.min(1.0)) / share;
     let error = error.map_or_else(String::new, |error| {
         format!(" · error {:.1} %", 100.0 * error)
     });
-    format!("{spp} spp · {seconds:.0} s{error}{left}")
+    let text = format!("{spp} spp · {seconds:.0} s{error}");
+    (text, left.is_finite().then_some(left))
 }
 
 impl Export {
-    /// Shows the form for the cloth as it is seen now.
-    pub fn ask(&mut self, design: Arc<Design>, still: StillRequest) {
+    /// Shows the form for the cloth as it is seen now; `measured` says how that was traced.
+    pub fn ask(&mut self, design: Arc<Design>, still: StillRequest, measured: Option<Measured>) {
         if self.work.is_none() {
+            let proposal = pace::propose(measured, aspect(&still));
             self.form = Some(Form {
                 path: match &self.defaults.path {
                     Some(path) => path.display().to_string(),
                     None => format!("{}.png", design.name.replace(['/', '\\'], "-")),
                 },
-                width: self.defaults.width,
+                width: self.defaults.width.unwrap_or(proposal.width),
                 until: Until::Seconds,
-                seconds: self.defaults.seconds,
+                seconds: self.defaults.seconds.unwrap_or(proposal.seconds),
+                backing: Backing::Itself,
+                measured,
                 samples: 256,
                 error: 5.0,
                 design,
@@ -163,11 +168,11 @@ impl Export {
         let Some(form) = &mut self.form else {
             return;
         };
-        let mut choice = Choice::None;
-        let modal = dialog::modal(ctx, "export").show(ctx, |ui| choice = form_ui(ui, form));
-        if modal.should_close() {
-            choice = Choice::Close;
-        }
+        let shown = dialog::show(ctx, "export", |ui| form_ui(ui, form));
+        let choice = match shown.escaped {
+            true => Choice::Close,
+            false => shown.inner,
+        };
         match choice {
             Choice::None => {}
             Choice::Close => self.form = None,
@@ -202,13 +207,14 @@ impl Export {
         still.height = scaled_height(&still, form.width);
         still.width = form.width;
         still.stop = stop;
-        // Kept pictures have no pinholes.
-        still.backing = Backing::Itself;
+        still.backing = form.backing;
         let design = form.design;
         let work = Running::start(ctx, "export", move |job, teller| {
             let rendered = still::render_still(&design, &still, job, &mut |pass| {
-                teller.tell(refined(&stop, pass.spp, pass.seconds, pass.error));
+                let (text, left) = refined(&stop, pass.spp, pass.seconds, pass.error);
+                teller.tell_left(text, left);
             });
+            teller.tell("finishing: denoising and writing".to_owned());
             match rendered.and_then(|done| done.save(&path).map(|()| done.report)) {
                 Ok(report) => Exported::Written(path, Box::new(report)),
                 Err(StillError::Cancelled(_)) => Exported::Cancelled,
@@ -226,9 +232,39 @@ enum Choice {
     Render,
 }
 
+/// Height over width.
+fn aspect(still: &StillRequest) -> f64 {
+    f64::from(still.height) / f64::from(still.width.max(1))
+}
+
 fn scaled_height(still: &StillRequest, width: u32) -> u32 {
-    let aspect = f64::from(still.height) / f64::from(still.width.max(1));
-    ((f64::from(width) * aspect).round() as u32).max(1)
+    ((f64::from(width) * aspect(still)).round() as u32).max(1)
+}
+
+/// What the picture that is asked for comes to on this machine.
+fn expected(form: &Form) -> String {
+    let Some(measured) = form.measured else {
+        return "How long this takes shows once the cloth has been traced for a while.".to_owned();
+    };
+    let pixels = f64::from(form.width) * f64::from(scaled_height(&form.still, form.width));
+    let percent = |error: f64| format!("about {:.0} %", (100.0 * error).max(1.0));
+    let text = match form.until {
+        Until::Seconds => {
+            let error = measured.error_after(pixels, form.seconds);
+            format!("An error of {}", percent(error))
+        }
+        Until::Samples => {
+            let spp = f64::from(form.samples);
+            let seconds = pace::in_words(measured.seconds_of(pixels, spp));
+            let error = percent(measured.error_of(spp));
+            format!("About {seconds}, and an error of {error}")
+        }
+        Until::Error => {
+            let seconds = measured.seconds_to(pixels, form.error / 100.0);
+            format!("About {}", pace::in_words(seconds))
+        }
+    };
+    format!("{text} before it is denoised, as this machine traced the cloth so far.")
 }
 
 fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
@@ -242,12 +278,10 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
         .num_columns(2)
         .show(ui, |ui| {
             let label = ui.label("Width");
-            ui.add(
-                DragValue::new(&mut form.width)
-                    .range(16..=16_384)
-                    .suffix(" px"),
-            )
-            .labelled_by(label.id);
+            let field = DragValue::new(&mut form.width)
+                .range(16..=16_384)
+                .suffix(" px");
+            typing::number(ui, field).labelled_by(label.id);
             ui.end_row();
             ui.label("Height");
             ui.label(format!("{} px", scaled_height(&form.still, form.width)));
@@ -270,30 +304,50 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
                         .speed(0.1)
                         .suffix(" %"),
                 };
-                let field = ui.add_enabled(form.until == until, field);
+                let on = form.until == until;
+                let field = ui.add_enabled_ui(on, |ui| typing::number(ui, field)).inner;
                 let spoken = format!("{name}, value");
                 field.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &spoken)
                 });
                 ui.end_row();
             }
+            let label = ui.label("Behind the cloth");
+            let name = |backing: Backing| {
+                let found = BACKINGS.iter().find(|(known, _)| *known == backing);
+                found.map_or("", |(_, name)| name)
+            };
+            let shown = ComboBox::from_id_salt("backing")
+                .selected_text(name(form.backing))
+                .show_ui(ui, |ui| {
+                    for (backing, name) in BACKINGS {
+                        ui.selectable_value(&mut form.backing, backing, name);
+                    }
+                });
+            shown.response.labelled_by(label.id);
+            ui.end_row();
             let label = ui.label("File");
             ui.horizontal(|ui| {
-                ui.add(egui::TextEdit::singleline(&mut form.path))
-                    .labelled_by(label.id);
+                let field = ui.add(egui::TextEdit::singleline(&mut form.path));
+                if typing::entered(ui, &field) {
+                    field.request_focus();
+                    choice = Choice::Render;
+                }
+                if field.changed() {
+                    form.wrong = None;
+                }
+                field.labelled_by(label.id);
                 if ui.button("Browse…").clicked() {
                     choice = Choice::Browse;
                 }
             });
             ui.end_row();
         });
-    if let Some(wrong) = &form.wrong {
-        ui.horizontal(|ui| {
-            icons::show(ui, Grade::Error, palette.error);
-            ui.label(RichText::new(format!("Error: {}", visible(wrong))).color(palette.error));
-        });
-    }
-    ui.add_space(tokens::GAP);
+    ui.vertical(|ui| {
+        ui.set_min_height(2.0 * ui.text_style_height(&egui::TextStyle::Body));
+        ui.label(RichText::new(expected(form)).color(palette.quiet));
+    });
+    dialog::problem(ui, form.wrong.as_deref());
     ui.horizontal(|ui| {
         if ui.button("Render").clicked() {
             choice = Choice::Render;
@@ -315,19 +369,24 @@ mod tests {
             seconds: Some(60.0),
             ..Stop::default()
         };
-        assert_eq!(refined(&seconds, 8, 15.0, None), "8 spp · 15 s · 45 s left");
+        let left = |stop: &Stop, error| refined(stop, 8, 15.0, error).1.map(f64::round);
+        assert_eq!(refined(&seconds, 8, 15.0, None).0, "8 spp · 15 s");
+        assert_eq!(left(&seconds, None), Some(45.0));
         let samples = Stop {
             spp: Some(32),
             ..Stop::default()
         };
-        assert_eq!(refined(&samples, 8, 15.0, None), "8 spp · 15 s · 45 s left");
+        assert_eq!(left(&samples, None), Some(45.0));
         let error = Stop {
             error: Some(0.05),
             ..Stop::default()
         };
         // Half the error takes four times the samples.
-        let told = refined(&error, 8, 15.0, Some(0.1));
-        assert_eq!(told, "8 spp · 15 s · error 10.0 % · 45 s left");
-        assert_eq!(refined(&error, 8, 15.0, None), "8 spp · 15 s");
+        assert_eq!(left(&error, Some(0.1)), Some(45.0));
+        assert_eq!(
+            refined(&error, 8, 15.0, Some(0.1)).0,
+            "8 spp · 15 s · error 10.0 %"
+        );
+        assert_eq!(left(&error, None), None);
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use egui::{Key, RichText};
+use egui::RichText;
 use pickglass::design::{Design, SourceImage};
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
@@ -14,10 +14,10 @@ use pickglass::formats::pdf::{self, PdfOptions};
 use pickglass::formats::{self, SaveOptions, atomic, jc5, output, photo};
 use pickglass::text::with_causes;
 
-use super::dialog;
 use super::image_form::{self, ImageForm};
 use super::session::{self, Session};
 use super::task::{Outcome, Task};
+use super::{dialog, typing};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 
@@ -165,6 +165,24 @@ struct TypedPath {
     focused: bool,
     /// The file exists and the person was asked once whether to write over it.
     over: Option<PathBuf>,
+    /// The path was entered: the field is closed once its file is read or written.
+    at_work: bool,
+    /// What came of the path that was entered.
+    problem: Option<String>,
+}
+
+impl TypedPath {
+    /// Takes what came of the path; true where that was told beside the field, which is
+    /// then open still.
+    fn failed(&mut self, event: &FileEvent) -> bool {
+        self.problem = Some(match event {
+            FileEvent::OpenFailed(problem) => problem.clone(),
+            FileEvent::SaveFailed(problem) => format!("{problem}. The earlier file is as it was."),
+            _ => return false,
+        });
+        (self.at_work, self.focused) = (false, false);
+        true
+    }
 }
 
 /// What is to be written: the design as it was when it was asked for.
@@ -260,6 +278,8 @@ impl Files {
             reason,
             focused: false,
             over: None,
+            at_work: false,
+            problem: None,
         });
     }
 
@@ -447,6 +467,12 @@ impl Files {
                 )),
             };
             *slot = None;
+            if let Some(typed) = self.typed.as_mut().filter(|typed| typed.at_work) {
+                if typed.failed(&event) {
+                    continue;
+                }
+                self.typed = None;
+            }
             return Some(event);
         }
         None
@@ -458,7 +484,7 @@ impl Files {
             Purpose::Save | Purpose::Export | Purpose::Print => {
                 let path = with_ending(path, purpose.ending());
                 match ImageForm::of(&path).filter(|_| purpose == Purpose::Export) {
-                    Some(form) => self.image = Some(form),
+                    Some(form) => (self.image, self.typed) = (Some(form), None),
                     None => self.chosen = Some((purpose, path, SaveOptions::default())),
                 }
             }
@@ -485,29 +511,44 @@ impl Files {
         let Some(typed) = &mut self.typed else {
             return;
         };
-        let (mut done, mut close) = (false, false);
-        let modal = dialog::modal(ctx, "typed path")
-            .show(ctx, |ui| typed_ui(ui, typed, &mut done, &mut close));
-        close |= modal.should_close();
+        let shown = dialog::show(ctx, "typed path", |ui| typed_ui(ui, typed));
+        let reads = typed.purpose.reads();
+        if shown.escaped || shown.inner == Wish::Close {
+            // What is being read was for this field alone.
+            if typed.at_work && reads {
+                self.reading = None;
+            }
+            self.typed = None;
+            return;
+        }
         let path = PathBuf::from(typed.text.trim().trim_matches('"'));
-        if done && !path.as_os_str().is_empty() {
+        let ready = !path.as_os_str().is_empty() && (reads || !typed.at_work);
+        if shown.inner == Wish::Go && ready {
             let purpose = typed.purpose;
+            typed.problem = None;
             // Ask once before an existing file is written over.
-            if !purpose.reads() && path.exists() && typed.over.as_deref() != Some(&*path) {
+            if !reads && path.exists() && typed.over.as_deref() != Some(&*path) {
                 typed.over = Some(path);
                 return;
             }
-            self.typed = None;
+            typed.at_work = true;
             self.choose(ctx, purpose, path);
-        } else if close {
-            self.typed = None;
         }
     }
 }
 
-fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &mut bool) {
+/// What is wished in the form of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wish {
+    Nothing,
+    Go,
+    Close,
+}
+
+fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath) -> Wish {
     ui.set_width(tokens::TOAST_WIDTH);
     let palette = Palette::current(ui);
+    let mut wish = Wish::Nothing;
     ui.label(RichText::new(typed.purpose.title()).text_style(egui::TextStyle::Heading));
     ui.label(RichText::new(typed.reason).color(palette.quiet));
     let label = ui.label(typed.purpose.field());
@@ -518,15 +559,24 @@ fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &m
         field.request_focus();
         typed.focused = true;
     }
-    *done |= field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    let over = (typed.over.as_deref()).is_some_and(|over| over == Path::new(typed.text.trim()));
-    if over {
-        ui.label(
-            RichText::new("Warning: this file exists and will be written over.")
-                .color(palette.warning),
-        );
+    if field.changed() {
+        typed.problem = None;
     }
-    ui.add_space(tokens::GAP);
+    if typing::entered(ui, &field) {
+        // It is left once the file is there: a correction is typed here as well.
+        field.request_focus();
+        wish = Wish::Go;
+    }
+    let over = (typed.over.as_deref()).is_some_and(|over| over == Path::new(typed.text.trim()));
+    if over && typed.problem.is_none() {
+        ui.vertical(|ui| {
+            ui.set_min_height(2.0 * ui.text_style_height(&egui::TextStyle::Body));
+            let text = "Warning: this file exists and will be written over.";
+            ui.label(RichText::new(text).color(palette.warning));
+        });
+    } else {
+        dialog::problem(ui, typed.problem.as_deref());
+    }
     ui.horizontal(|ui| {
         let ready = !typed.text.trim().is_empty();
         let name = if over {
@@ -534,9 +584,17 @@ fn typed_ui(ui: &mut egui::Ui, typed: &mut TypedPath, done: &mut bool, close: &m
         } else {
             typed.purpose.button()
         };
-        *done |= ui.add_enabled(ready, egui::Button::new(name)).clicked();
-        *close |= ui.button("Cancel").clicked();
+        if ui.add_enabled(ready, egui::Button::new(name)).clicked() {
+            wish = Wish::Go;
+        }
+        if ui.button("Cancel").clicked() {
+            wish = Wish::Close;
+        }
+        if typed.at_work {
+            ui.spinner();
+        }
     });
+    wish
 }
 
 /// What was opened, woven, or why not.

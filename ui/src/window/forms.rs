@@ -1,18 +1,20 @@
 //! Forms of the weave menu: size, repeat, loom, name and notes. Each begins with what the
 //! design has and comes to edits, which are one entry of the history.
 
-use egui::{ComboBox, DragValue, RichText};
+use egui::{ComboBox, DragValue, Response, RichText, ScrollArea};
 use pickglass::design::{
     Design, Lattice, Lifting, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed, WeavePattern, library, weave,
 };
 use pickglass::edit::Edit;
 use pickglass::text::visible;
 
-use super::draft;
+use super::{dialog, draft, typing};
 use crate::tokens::{self, Palette};
 
 /// Names of the library that are offered while a weave is typed.
 const MOST_NAMES: usize = 12;
+/// Room for them, points.
+const NAMES_HEIGHT: f32 = 24.0 * tokens::GRID;
 
 /// A form with what was entered so far.
 pub enum Form {
@@ -107,6 +109,7 @@ impl Form {
         let title = self.title();
         ui.label(RichText::new(title).text_style(egui::TextStyle::Heading));
         ui.add_space(tokens::GRID);
+        let mut entered = false;
         let wrong = match self {
             Self::Size { ends, picks } => size_ui(ui, ends, picks),
             Self::Repeat(lattice) => repeat_ui(ui, lattice),
@@ -123,21 +126,31 @@ impl Form {
                 loom_ui(ui, wanted);
                 None
             }
-            Self::Words { name, notes } => words_ui(ui, name, notes),
+            Self::Words { name, notes } => {
+                let field = words_ui(ui, name, notes);
+                entered = typing::entered(ui, &field);
+                if entered {
+                    field.request_focus();
+                }
+                let empty = name.trim().is_empty();
+                empty.then(|| "a design needs a name, to be found again: type one".to_owned())
+            }
             Self::Stamp(text) => {
-                stamp_ui(ui, text);
-                by_name(text).err()
+                let field = stamp_ui(ui, text);
+                entered = typing::entered(ui, &field);
+                if entered {
+                    field.request_focus();
+                }
+                by_name(text).err().filter(|_| !text.trim().is_empty())
             }
         };
-        if let Some(wrong) = &wrong {
-            let error = Palette::current(ui).error;
-            ui.label(RichText::new(format!("Error: {}", visible(wrong))).color(error));
-        }
-        ui.add_space(tokens::PAD);
+        dialog::problem(ui, wrong.as_deref());
         let mut filled = Filled::Open;
         ui.horizontal(|ui| {
             let apply = egui::Button::new("Apply");
-            if ui.add_enabled(wrong.is_none(), apply).clicked() {
+            let ready =
+                wrong.is_none() && !matches!(self, Self::Stamp(text) if text.trim().is_empty());
+            if ui.add_enabled(ready, apply).clicked() || (ready && entered) {
                 filled = match self {
                     Self::Stamp(text) => by_name(text).map_or(Filled::Open, Filled::Stamp),
                     _ => Filled::Done(title, self.edits()),
@@ -200,8 +213,7 @@ fn note(ui: &mut egui::Ui, text: &str) {
 
 fn number(ui: &mut egui::Ui, name: &str, value: &mut u32, most: u32) {
     let label = ui.label(name);
-    ui.add(DragValue::new(value).range(1..=most))
-        .labelled_by(label.id);
+    typing::number(ui, DragValue::new(value).range(1..=most)).labelled_by(label.id);
     ui.end_row();
 }
 
@@ -253,11 +265,10 @@ fn direction_ui(ui: &mut egui::Ui, name: &str, repeat: &mut Repeat) {
         egui::WidgetInfo::labeled(egui::Role::ComboBox, true, format!("{name}: {now}"))
     });
     if let Repeat::Dropped(by) = repeat {
-        let field = ui.add(
-            DragValue::new(by)
-                .range(0..=u32::from(u16::MAX))
-                .suffix(" threads"),
-        );
+        let field = DragValue::new(by)
+            .range(0..=u32::from(u16::MAX))
+            .suffix(" threads");
+        let field = typing::number(ui, field);
         field.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::SpinButton, true, format!("{name}: shift"))
         });
@@ -269,9 +280,13 @@ fn loom_ui(ui: &mut egui::Ui, wanted: &mut Loom) {
     note(ui, "The cloth stays unless shafts in use are taken away.");
     egui::Grid::new("loom").num_columns(2).show(ui, |ui| {
         number(ui, "Shafts", &mut wanted.shafts, MAX_SHAFTS.min(1024));
-        if !wanted.lift_plan {
-            number(ui, "Treadles", &mut wanted.treadles, MAX_SHAFTS.min(1024));
-        }
+        // Not hidden where there are none: what is chosen below would move away.
+        let treadles = ui.label("Treadles");
+        ui.add_enabled_ui(!wanted.lift_plan, |ui| {
+            let field = DragValue::new(&mut wanted.treadles).range(1..=MAX_SHAFTS.min(1024));
+            typing::number(ui, field).labelled_by(treadles.id);
+        });
+        ui.end_row();
         ui.label("Lifting");
         ui.horizontal(|ui| {
             ui.selectable_value(&mut wanted.lift_plan, false, "tie-up and treadles");
@@ -287,15 +302,15 @@ fn loom_ui(ui: &mut egui::Ui, wanted: &mut Loom) {
     });
 }
 
-fn words_ui(ui: &mut egui::Ui, name: &mut String, notes: &mut String) -> Option<String> {
+/// The fields; that of the name is given back.
+fn words_ui(ui: &mut egui::Ui, name: &mut String, notes: &mut String) -> Response {
     let label = ui.label("Name");
-    ui.add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY))
-        .labelled_by(label.id);
+    let field = egui::TextEdit::singleline(name).desired_width(f32::INFINITY);
+    let field = ui.add(field).labelled_by(label.id);
     let label = ui.label("Notes");
     ui.add(egui::TextEdit::multiline(notes).desired_width(f32::INFINITY))
         .labelled_by(label.id);
-    let empty = name.trim().is_empty();
-    empty.then(|| "a design without a name cannot be found again: give it one".to_owned())
+    field
 }
 
 /// The weave of a name in the library, or of a notation.
@@ -306,30 +321,40 @@ fn by_name(text: &str) -> Result<WeavePattern, String> {
     }
 }
 
-fn stamp_ui(ui: &mut egui::Ui, text: &mut String) {
+/// The field of the weave, given back, and names that it may become.
+fn stamp_ui(ui: &mut egui::Ui, text: &mut String) -> Response {
     note(
         ui,
         "A notation such as 3/1 twill, or a name from the library.",
     );
     let label = ui.label("Weave");
     let field = egui::TextEdit::singleline(text).desired_width(f32::INFINITY);
-    ui.add(field).labelled_by(label.id);
+    let field = ui.add(field).labelled_by(label.id);
     let typed = text.trim().to_lowercase();
     let names = (library::library().iter())
         .map(library::LibraryWeave::name)
         .filter(|name| *name != typed && name.to_lowercase().contains(&typed))
         .take(MOST_NAMES);
     let mut chosen = None;
-    ui.horizontal_wrapped(|ui| {
-        for name in names {
-            if ui.small_button(name).clicked() {
-                chosen = Some(name.to_owned());
-            }
-        }
-    });
+    // As high whatever is found: the field stays where it is while one types.
+    ScrollArea::vertical()
+        .auto_shrink(false)
+        .min_scrolled_height(NAMES_HEIGHT)
+        .max_height(NAMES_HEIGHT)
+        .show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for name in names {
+                    if ui.small_button(name).clicked() {
+                        chosen = Some(name.to_owned());
+                    }
+                }
+            });
+        });
     if let Some(name) = chosen {
         *text = name;
+        field.request_focus();
     }
+    field
 }
 
 #[cfg(test)]

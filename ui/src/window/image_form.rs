@@ -62,7 +62,7 @@ impl ImageForm {
     /// Shows it; the answer once there is one.
     pub fn show(&mut self, ctx: &egui::Context) -> Option<Answer> {
         let mut answer = None;
-        let modal = dialog::modal(ctx, "draft as image").show(ctx, |ui| {
+        let shown = dialog::show(ctx, "draft as image", |ui| {
             ui.set_width(tokens::TOAST_WIDTH);
             let name = self.path.file_name().unwrap_or(self.path.as_os_str());
             let title = format!("Write the image {}", visible(&name.to_string_lossy()));
@@ -78,7 +78,7 @@ impl ImageForm {
                 }
             });
         });
-        if answer.is_none() && modal.should_close() {
+        if answer.is_none() && shown.escaped {
             answer = Some(Answer::Closed);
         }
         answer
@@ -91,11 +91,12 @@ impl ImageForm {
             ui.radio_value(&mut options.content, content, words)
                 .on_hover_text(tip);
         }
-        if options.content == ImageContent::Weave {
+        // Not hidden where it says nothing: what was just pressed would move away.
+        ui.add_enabled_ui(options.content == ImageContent::Weave, |ui| {
             import::group(ui, "Black");
             ui.radio_value(&mut options.black, Black::Warp, "warp up");
             ui.radio_value(&mut options.black, Black::Weft, "weft up");
-        }
+        });
         import::group(ui, "End 1 and pick 1 meet");
         let before = "where they did in the file it is from";
         ui.radio_value(&mut options.corner, None, before);

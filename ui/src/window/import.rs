@@ -6,15 +6,17 @@ use std::path::PathBuf;
 use egui::{
     Button, ComboBox, DragValue, RichText, ScrollArea, TextureHandle, TextureOptions, vec2,
 };
-use pickglass::formats::LoadOptions;
-use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageReading, Key};
+use pickglass::formats::image::{
+    Black, Convention, Corner, ImageAs, ImageError, ImageReading, Key,
+};
+use pickglass::formats::{FormatError, LoadOptions};
 use pickglass::limits::SETT_PER_CM;
 use pickglass::text::{visible, with_causes};
 
 use super::panes::later::Later;
 use super::thumbs;
 use super::toasts::Grade;
-use super::{dialog, icons};
+use super::{dialog, icons, typing};
 use crate::opened::Opened;
 use crate::tokens::{self, Palette};
 
@@ -61,7 +63,26 @@ struct Answers {
 }
 
 /// What would be opened, or why nothing would.
-type Read = Result<(Opened, egui::ColorImage), String>;
+type Read = Result<(Opened, egui::ColorImage), Unread>;
+
+/// Why an image is not opened as it is.
+enum Unread {
+    /// It is a picture of so many colours.
+    Picture(String),
+    Wrong(String),
+}
+
+impl Unread {
+    fn of(error: &anyhow::Error) -> Self {
+        match error.downcast_ref() {
+            Some(FormatError::Image(ImageError {
+                picture: Some(colours),
+                ..
+            })) => Self::Picture(colours.clone()),
+            _ => Self::Wrong(with_causes(error.as_ref())),
+        }
+    }
+}
 
 /// The form of one image or loom file.
 pub struct Import {
@@ -71,6 +92,8 @@ pub struct Import {
     answers: Answers,
     maker: Option<Convention>,
     read: Later<Answers, Read>,
+    /// How many colours it has, where it was found to be a picture.
+    colours: Option<String>,
     /// The preview, and what it answers.
     shown: Option<(Answers, TextureHandle)>,
 }
@@ -96,6 +119,7 @@ impl Import {
             },
             maker: None,
             read: Later::default(),
+            colours: None,
             shown: None,
         }
     }
@@ -104,7 +128,7 @@ impl Import {
     pub fn show(&mut self, ctx: &egui::Context) -> Option<Answer> {
         self.read_again(ctx);
         let mut answer = None;
-        let modal = dialog::modal(ctx, "import").show(ctx, |ui| {
+        let shown = dialog::show(ctx, "import", |ui| {
             let name = self.path.file_name().unwrap_or(self.path.as_os_str());
             let kind = if self.loom { "loom file" } else { "image" };
             let title = format!("Open the {kind} {}", visible(&name.to_string_lossy()));
@@ -130,7 +154,7 @@ impl Import {
             ui.add_space(tokens::GAP);
             answer = self.buttons_ui(ui);
         });
-        if modal.should_close() {
+        if shown.escaped {
             answer = Some(Answer::Closed);
         }
         answer
@@ -147,13 +171,18 @@ impl Import {
                     face_down: wanted.face_down,
                     ..LoadOptions::default()
                 };
-                let opened =
-                    Opened::read(path, &options).map_err(|error| with_causes(error.as_ref()))?;
+                let opened = Opened::read(path, &options).map_err(|error| Unread::of(&error))?;
                 let image = thumbs::swatch_of(&opened.design, &opened.design.weave());
                 Ok((opened, image))
             });
         }
         let answered = self.read.question().filter(|known| **known == self.answers);
+        if let (Some(_), Some(Err(Unread::Picture(colours)))) = (answered, self.read.answer()) {
+            // What it is shows in its colours: the way to open it is chosen.
+            self.colours = Some(colours.clone());
+            self.answers.reading.what = Some(ImageAs::Picture);
+            return;
+        }
         let fresh = self.shown.as_ref().map(|(known, _)| known) != answered;
         if let (true, Some(Ok((_, image))), Some(known)) = (fresh, self.read.answer(), answered) {
             let texture = ctx.load_texture("import", image.clone(), TextureOptions::LINEAR);
@@ -193,9 +222,13 @@ impl Import {
         for (what, words) in KINDS {
             ui.radio_value(&mut reading.what, what, words);
         }
-        if reading.what == Some(ImageAs::Picture) {
-            return;
-        }
+        // Not hidden where they say nothing: what was just pressed would move away.
+        ui.add_enabled_ui(!self.is_picture(), |ui| self.reading_ui(ui));
+    }
+
+    /// How a weave or artwork is read.
+    fn reading_ui(&mut self, ui: &mut egui::Ui) {
+        let reading = &mut self.answers.reading;
         group(ui, "Black");
         ui.radio_value(&mut reading.black, Black::Warp, "warp up");
         ui.radio_value(&mut reading.black, Black::Weft, "weft up");
@@ -218,7 +251,7 @@ impl Import {
         if let Some((ends, picks)) = &mut self.answers.sett {
             for (value, name) in [(ends, "ends/cm"), (picks, "picks/cm")] {
                 let field = DragValue::new(value).range(SETT_PER_CM).speed(0.1);
-                let field = ui.add(field.suffix(format!(" {name}")));
+                let field = typing::number(ui, field.suffix(format!(" {name}")));
                 field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
             }
         }
@@ -238,6 +271,9 @@ impl Import {
     fn preview_ui(&self, ui: &mut egui::Ui) {
         let palette = Palette::current(ui);
         if self.is_picture() {
+            if let Some(colours) = &self.colours {
+                ui.label(format!("A picture of {colours}."));
+            }
             let text = "It becomes regions of weaves in the pane Posterise.";
             ui.label(RichText::new(text).color(palette.quiet));
             return;
@@ -260,7 +296,7 @@ impl Import {
                     ui.label(RichText::new(visible(warning)).small().color(palette.quiet));
                 }
             }
-            Some(Err(problem)) => {
+            Some(Err(Unread::Wrong(problem))) => {
                 ui.horizontal_wrapped(|ui| {
                     icons::show(ui, Grade::Error, palette.error);
                     ui.label(
@@ -268,7 +304,7 @@ impl Import {
                     );
                 });
             }
-            None => {}
+            Some(Err(Unread::Picture(_))) | None => {}
         }
     }
 

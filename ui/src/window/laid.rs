@@ -5,8 +5,16 @@ use std::sync::Arc;
 use pickglass::design::{Design, Positions, Repeat, WeavePattern};
 use pickglass::edit::Document;
 
+use super::view::ClothView;
+
 /// A whole design larger than this is shown by its weave's repeat alone, threads.
 const LARGEST_WHOLE: u32 = 192;
+
+/// Width of cloth that is shown of a design that was just opened, mm: one repeat, but no
+/// more than this, and no fewer than [`FEWEST_OPENED`] threads.
+pub const WIDEST_OPENED_MM: f32 = 200.0;
+/// Threads across that a small repeat is shown with, itself and its neighbours.
+const FEWEST_OPENED: f32 = 24.0;
 
 /// Ends and picks that show the whole design, colours included: the cloth's own repeat
 /// where that is small enough to look at, else the weave's.
@@ -30,8 +38,14 @@ pub fn whole(design: &Design) -> (u32, u32) {
 /// A design with its drawdown and the places of its threads, worked out once.
 #[derive(Clone)]
 pub struct Laid {
+    /// A design of this cloth: where an edit changes words or a draft alone it stays the
+    /// one that pictures were made of.
     pub design: Arc<Design>,
     pub drawdown: Arc<WeavePattern>,
+    /// Another number for every other cloth.
+    pub cloth: u64,
+    /// What the document had when this was last compared with it.
+    seen: (Arc<Design>, Arc<WeavePattern>),
     ends: Arc<Positions>,
     picks: Arc<Positions>,
 }
@@ -41,6 +55,14 @@ impl Laid {
     pub fn of(document: &Document, before: Option<Self>) -> Self {
         let design = Arc::clone(document.design());
         let drawdown = Arc::clone(document.drawdown());
+        let cloth = before.as_ref().map_or(0, |before| before.cloth + 1);
+        let before = match before {
+            Some(before) if before.is_of(&design, &drawdown) => {
+                let seen = (design, drawdown);
+                return Self { seen, ..before };
+            }
+            before => before,
+        };
         let kept = before.filter(|before| {
             let size = |design: &Design| (design.ends(), design.picks());
             size(&before.design) == size(&design) && before.design.sett() == design.sett()
@@ -53,11 +75,19 @@ impl Laid {
             ),
         };
         Self {
+            seen: (Arc::clone(&design), Arc::clone(&drawdown)),
             design,
             drawdown,
+            cloth,
             ends,
             picks,
         }
+    }
+
+    /// Whether a state of the document is this cloth.
+    fn is_of(&self, design: &Arc<Design>, drawdown: &Arc<WeavePattern>) -> bool {
+        let same = Arc::ptr_eq(design, &self.seen.0) && Arc::ptr_eq(drawdown, &self.seen.1);
+        same || design.same_cloth(drawdown, &self.design, &self.drawdown)
     }
 
     /// Size of the [`whole`] design, mm.
@@ -67,6 +97,16 @@ impl Laid {
             self.ends.start(i64::from(ends)) as f32,
             self.picks.start(i64::from(picks)) as f32,
         ]
+    }
+
+    /// Width of cloth across a pane whose width is `aspect` times its height, mm, where the
+    /// design was just opened.
+    pub fn opened_mm(&self, aspect: f32) -> f32 {
+        let [width, height] = self.whole_mm();
+        let sett = self.design.sett();
+        let pitch = sett.ends.mean_pitch_mm().max(sett.picks.mean_pitch_mm());
+        let fitting = ClothView::MARGIN * width.max(height * aspect);
+        fitting.min(WIDEST_OPENED_MM).max(FEWEST_OPENED * pitch)
     }
 
     /// The crossing (end, pick) of the endless cloth at a point of it, mm.
@@ -99,5 +139,37 @@ impl Laid {
             nearest(x, end, self.design.ends(), &self.ends),
             nearest(y, pick, self.design.picks(), &self.picks),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pickglass::design::{Sett, Structure};
+
+    /// A weave of so many ends and picks at 20 threads a cm each way.
+    fn laid(ends: u32, picks: u32) -> Laid {
+        let blank = crate::window::session::blank().expect("a design");
+        let weave = Structure::Pattern(WeavePattern::new(ends, picks));
+        let design = Design::clone(&blank.design)
+            .with_structure(weave)
+            .expect("woven");
+        let design = design.with_sett(Sett::per_cm(20.0, 20.0)).expect("a sett");
+        Laid::of(&Document::new(design), None)
+    }
+
+    #[test]
+    fn a_design_is_opened_on_one_repeat_and_no_wider_than_is_said() {
+        // 0.5 mm a thread: 120 ends are 60 mm, with a margin.
+        let width = laid(120, 120).opened_mm(1.0);
+        assert!((width - 60.0 * ClothView::MARGIN).abs() < 0.01, "{width}");
+        // What is higher than the pane decides.
+        let width = laid(120, 120).opened_mm(1.5);
+        assert!((width - 90.0 * ClothView::MARGIN).abs() < 0.01, "{width}");
+        for (ends, picks) in [(960, 600), (600, 4000), (5120, 6300)] {
+            assert_eq!(laid(ends, picks).opened_mm(1.2), WIDEST_OPENED_MM);
+        }
+        // Four threads alone would be a fence: 24 of them are shown.
+        assert!((laid(4, 4).opened_mm(1.0) - 12.0).abs() < 0.01);
     }
 }

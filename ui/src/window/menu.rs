@@ -63,6 +63,7 @@ impl Situation<'_> {
             | Command::Quit
             | Command::Theme
             | Command::ResetLayout
+            | Command::Settings
             | Command::Palette
             | Command::Shortcuts => true,
             Command::Undo => self.undo.is_some(),
@@ -269,34 +270,37 @@ pub fn key_of(command: Command) -> Option<egui::Key> {
     Some(single.logical_key)
 }
 
-/// The command whose shortcut was pressed first, and which is then no key any more. Keys
-/// without Ctrl or Alt act only while no text field has the focus.
-pub fn pressed(ctx: &egui::Context) -> Option<Command> {
+/// The command whose shortcut was pressed first, and the place that its event had, which is
+/// then none any more. Keys without Ctrl or Alt act only while no text field has the focus.
+pub fn pressed(ctx: &egui::Context) -> Option<(Command, usize)> {
     let typing = ctx.egui_wants_keyboard_input() && ctx.text_edit_focused();
-    if !typing && let Some(command) = clipboard(ctx) {
-        return Some(command);
-    }
     ctx.input_mut(|input| {
-        let (place, command) = (input.events.iter().enumerate()).find_map(|(place, event)| {
-            let egui::Event::Key {
-                key,
-                pressed: true,
-                modifiers,
-                ..
-            } = event
-            else {
-                return None;
-            };
-            // In a text field, select all, undo and the like mean its text.
-            command_of(*key, *modifiers, typing)
-                .filter(|command| !typing || outside_text(*command))
-                // Its key holds the glass as long as it is down, and nothing more.
-                .filter(|command| *command != Command::Glass)
-                .map(|command| (place, command))
-        })?;
-        input.events.remove(place);
-        Some(command)
+        let found = (input.events.iter().enumerate())
+            .find_map(|(place, event)| Some((meant(event, typing)?, place)))?;
+        input.events.remove(found.1);
+        Some(found)
     })
+}
+
+/// The command that an event stands for.
+fn meant(event: &egui::Event, typing: bool) -> Option<Command> {
+    match event {
+        // Systems send cut, copy and paste as events of their own, not as keys.
+        egui::Event::Copy if !typing => Some(Command::Copy),
+        egui::Event::Cut if !typing => Some(Command::Cut),
+        egui::Event::Paste(_) if !typing => Some(Command::Paste),
+        egui::Event::Key {
+            key,
+            pressed: true,
+            modifiers,
+            ..
+        } => command_of(*key, *modifiers, typing)
+            // In a text field, select all, undo and the like mean its text.
+            .filter(|command| !typing || outside_text(*command))
+            // Its key holds the glass as long as it is down, and nothing more.
+            .filter(|command| *command != Command::Glass),
+        _ => None,
+    }
 }
 
 /// What a key means with what was held when it went down: by the end of a slow frame, Shift
@@ -327,9 +331,29 @@ pub fn goes_on(command: Command) -> bool {
         Command::Undo
             | Command::Redo
             | Command::Roll(_)
+            | Command::Use(_)
+            | Command::SwapColours
+            | Command::SymmetryAcross
+            | Command::SymmetryAlong
+            | Command::SymmetrySteps
+            | Command::NextColourway
+            | Command::PreviousColourway
+            | Command::Colourway(_)
+            | Command::Look(_)
+            | Command::TurnOver
+            | Command::Straighten
+            | Command::Orbit(_)
+            | Command::Pan(_)
+            | Command::Fit
+            | Command::ActualSize
             | Command::ZoomIn
             | Command::ZoomOut
-            | Command::NextColourway
+            | Command::Structure
+            | Command::GridLines
+            | Command::LongFloats
+            | Command::Ghosts
+            | Command::Navigator
+            | Command::Pause
     )
 }
 
@@ -352,23 +376,11 @@ fn plain(held: Modifiers, named: Modifiers) -> bool {
     !held.command && !held.ctrl && !held.alt && (held.shift || !named.shift)
 }
 
-/// Systems send cut, copy and paste as events of their own, not as keys.
-fn clipboard(ctx: &egui::Context) -> Option<Command> {
-    ctx.input(|input| {
-        input.events.iter().find_map(|event| match event {
-            egui::Event::Copy => Some(Command::Copy),
-            egui::Event::Cut => Some(Command::Cut),
-            egui::Event::Paste(_) => Some(Command::Paste),
-            _ => None,
-        })
-    })
-}
-
 /// Shows the table of shortcuts; false when it was closed.
 pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
     let mut open = true;
     let room = (ctx.content_rect().height() - 14.0 * tokens::PAD).max(tokens::LIST_HEIGHT);
-    let modal = dialog::modal(ctx, "shortcuts").show(ctx, |ui| {
+    let shown = dialog::show(ctx, "shortcuts", |ui| {
         ui.label(RichText::new("Keyboard shortcuts").text_style(tokens::title()));
         ui.add_space(tokens::GAP);
         egui::ScrollArea::vertical()
@@ -385,7 +397,7 @@ pub fn shortcuts_ui(ctx: &egui::Context) -> bool {
             open = false;
         }
     });
-    open && !modal.should_close()
+    open && !shown.escaped && !shown.beside
 }
 
 fn sheet_ui(ui: &mut egui::Ui, menu: Menu) {

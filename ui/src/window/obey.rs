@@ -8,6 +8,7 @@ use super::app::App;
 use super::asking::Next;
 use super::cloth::sheet::Kind as SheetKind;
 use super::panes::Pane;
+use super::settings_form::SettingsForm;
 use crate::command_table::Command;
 
 impl App {
@@ -31,7 +32,8 @@ impl App {
             Command::ExportStill => {
                 if let (Some(session), Some(asked)) = (&self.session, self.preview.asked()) {
                     self.export.source = session.source.clone().or_else(|| session.path.clone());
-                    self.export.ask(session.design(), asked.clone());
+                    let measured = self.preview.pane.measured();
+                    self.export.ask(session.design(), asked.clone(), measured);
                 }
             }
             Command::ExportVolume => {
@@ -68,6 +70,7 @@ impl App {
                 ctx.set_theme(theme);
             }
             Command::Palette => self.palette.open(),
+            Command::Settings => self.settings_form = Some(SettingsForm::new(&self.store)),
             Command::Shortcuts => self.show_shortcuts = true,
             Command::Show(pane) => self.layout.bring(pane),
             Command::ResetLayout => self.layout.reset(),

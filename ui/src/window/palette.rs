@@ -39,7 +39,7 @@ impl CommandPalette {
             )
         });
         let mut command = None;
-        let modal = dialog::modal(ctx, "palette").show(ctx, |ui| {
+        let shown = dialog::show(ctx, "palette", |ui| {
             ui.set_width(1.5 * tokens::TOAST_WIDTH);
             let field = ui.add(
                 egui::TextEdit::singleline(&mut self.typed)
@@ -68,12 +68,15 @@ impl CommandPalette {
                 .map(|row| row.command);
             ui.add_space(tokens::GRID);
             let quiet = Colours::current(ui).quiet;
-            if rows.is_empty() {
-                ui.label(RichText::new("No command is called this.").color(quiet));
-            }
+            let height = tokens::LIST_HEIGHT * 1.5;
             ScrollArea::vertical()
-                .max_height(tokens::LIST_HEIGHT * 1.5)
+                .auto_shrink(false)
+                .min_scrolled_height(height)
+                .max_height(height)
                 .show(ui, |ui| {
+                    if rows.is_empty() {
+                        ui.label(RichText::new("No command is called this.").color(quiet));
+                    }
                     for (index, row) in rows.iter().enumerate() {
                         let chosen = index == self.chosen;
                         let clicked = row_ui(ui, row, chosen, up || down, situation);
@@ -81,7 +84,8 @@ impl CommandPalette {
                     }
                 });
         });
-        if command.is_some() || modal.should_close() {
+        let untyped = shown.beside && self.typed.is_empty();
+        if command.is_some() || shown.escaped || untyped {
             self.open = false;
         }
         command

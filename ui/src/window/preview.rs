@@ -79,7 +79,7 @@ pub struct Preview {
     effects: EffectChoice,
     dials: Vec<(String, String)>,
     laid: Option<Laid>,
-    /// What was last asked of the worker, and at which revision.
+    /// What was last asked of the worker, and of which cloth, by [`Laid::cloth`].
     asked: Option<(u64, StillRequest)>,
     generation: u64,
     worker: ClothWorker,
@@ -123,9 +123,15 @@ impl Preview {
         })
     }
 
+    /// Looks at the design as one that was just opened.
+    pub fn look_anew(&mut self) {
+        self.cloth_view = None;
+        self.fit = false;
+    }
+
     /// Forgets what was seen: another document is open.
     pub fn forget(&mut self) {
-        self.cloth_view = None;
+        self.look_anew();
         self.pane.forget();
         self.compare = None;
         self.sheet = None;
@@ -305,7 +311,7 @@ impl Preview {
             self.laid = Some(laid);
             return;
         }
-        let description = format!("Cloth of {}", visible(&laid.design.name));
+        let description = format!("Cloth of {}", visible(&document.design().name));
         let straight = self.eye.is_none() && matches!(self.view, View::Face | View::Back);
         let marked = (self.marked.filter(|_| straight))
             .map(|(end, pick)| laid.near(view.centre_mm, end, pick));
@@ -321,12 +327,7 @@ impl Preview {
             None => {}
         }
         if !self.glass.is_held() {
-            self.ask_worker(
-                pane,
-                ui.ctx().pixels_per_point(),
-                &laid,
-                document.revision(),
-            );
+            self.ask_worker(pane, ui.ctx().pixels_per_point(), &laid);
         }
         if self.pane.shown.is_none() {
             self.busy_ui(ui, pane);
@@ -421,8 +422,12 @@ impl Preview {
 
     fn initial_view(&self, pane: Rect, laid: &Laid) -> ClothView {
         let middle = laid.whole_mm().map(|mm| mm / 2.0);
+        let straight = matches!(self.view, View::Face | View::Back);
         let mut view = if self.fit {
             ClothView::fitting(pane, middle, laid.whole_mm())
+        } else if straight {
+            let aspect = pane.width().max(1.0) / pane.height().max(1.0);
+            ClothView::across(pane, middle, laid.opened_mm(aspect))
         } else {
             ClothView::across(pane, middle, usual_width_mm(self.view, &laid.design))
         };
@@ -448,7 +453,7 @@ impl Preview {
     }
 
     /// Asks for a new picture when what is to be seen has changed.
-    fn ask_worker(&mut self, pane: Rect, density: f32, laid: &Laid, revision: u64) {
+    fn ask_worker(&mut self, pane: Rect, density: f32, laid: &Laid) {
         let Some(view) = self.cloth_view else {
             return;
         };
@@ -463,7 +468,7 @@ impl Preview {
             centre_mm: Some(view.centre_mm),
             ..self.look()
         };
-        let wanted = (revision, still);
+        let wanted = (laid.cloth, still);
         if self.asked.as_ref() == Some(&wanted) {
             return;
         }

@@ -4,9 +4,14 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use pickglass::job::Job;
+
+use super::pace;
+
+/// How often what is left is said anew.
+const TICK: Duration = Duration::from_millis(500);
 
 /// Work under way. Dropping it forgets the result.
 pub struct Task<T> {
@@ -61,16 +66,48 @@ pub struct Running<T> {
     task: Task<T>,
 }
 
+/// How far a piece of work is.
+struct Told {
+    text: String,
+    /// When what takes longest is over; what is left after that is short.
+    until: Option<Instant>,
+}
+
+impl Told {
+    /// In words, as it is at this moment.
+    fn words(&self, now: Instant) -> String {
+        let Some(until) = self.until else {
+            return self.text.clone();
+        };
+        match until.saturating_duration_since(now).as_secs_f64() {
+            over if over <= 0.0 => format!("{} · finishing", self.text),
+            left => format!("{} · {} left", self.text, pace::in_words(left)),
+        }
+    }
+}
+
 /// Says how far a piece of work is, in words, and wakes the window.
 #[derive(Clone)]
 pub struct Teller {
     ctx: egui::Context,
-    told: Arc<Mutex<String>>,
+    told: Arc<Mutex<Told>>,
 }
 
 impl Teller {
+    /// Says how far it is.
     pub fn tell(&self, text: String) {
-        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = text;
+        self.put(Told { text, until: None });
+    }
+
+    /// Says how far it is, and in how many seconds only the finishing is left.
+    pub fn tell_left(&self, text: String, left: Option<f64>) {
+        let left = left.and_then(|left| Duration::try_from_secs_f64(left.max(0.0)).ok());
+        let until = left.and_then(|left| Instant::now().checked_add(left));
+        self.put(Told { text, until });
+    }
+
+    fn put(&self, told: Told) {
+        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = told;
         self.ctx.request_repaint();
     }
 }
@@ -84,7 +121,10 @@ impl<T: Send + 'static> Running<T> {
     ) -> std::io::Result<Self> {
         let teller = Teller {
             ctx: ctx.clone(),
-            told: Arc::new(Mutex::new("preparing".to_owned())),
+            told: Arc::new(Mutex::new(Told {
+                text: "preparing".to_owned(),
+                until: None,
+            })),
         };
         let (stages, pace) = (teller.clone(), Pace::default());
         let job = Job::new()
@@ -99,7 +139,11 @@ impl<T> Running<T> {
     /// How far it is.
     pub fn progress(&self) -> String {
         let told = self.teller.told.lock();
-        told.unwrap_or_else(PoisonError::into_inner).clone()
+        let told = told.unwrap_or_else(PoisonError::into_inner);
+        if told.until.is_some() {
+            self.teller.ctx.request_repaint_after(TICK);
+        }
+        told.words(Instant::now())
     }
 
     pub fn cancel(&self) {
@@ -147,20 +191,35 @@ pub fn left(seconds: f64, share: f64) -> String {
         return String::new();
     }
     match left.max(0.0).ceil() {
-        minutes if minutes >= 120.0 => format!(" · {:.0} min left", minutes / 60.0),
-        seconds => format!(" · {seconds:.0} s left"),
+        over if over < 1.0 => " · finishing".to_owned(),
+        seconds => format!(" · {} left", pace::in_words(seconds)),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::left;
+    use super::{Duration, Instant, Told, left};
+
+    #[test]
+    fn what_is_left_is_told_as_it_is_now_and_never_as_nothing() {
+        let now = Instant::now();
+        let told = Told {
+            text: "8 spp".to_owned(),
+            until: Some(now + Duration::from_secs(45)),
+        };
+        let after = |seconds: f64| told.words(now + Duration::from_secs_f64(seconds));
+        assert_eq!(after(0.0), "8 spp · 45 s left");
+        assert_eq!(after(44.5), "8 spp · 1 s left");
+        // Denoising and writing may take a minute more.
+        assert_eq!(after(45.0), "8 spp · finishing");
+        assert_eq!(after(105.0), "8 spp · finishing");
+    }
 
     #[test]
     fn time_left_follows_from_what_is_done() {
         assert_eq!(left(10.0, 0.25), " · 30 s left");
         assert_eq!(left(600.0, 0.25), " · 30 min left");
-        assert_eq!(left(10.0, 1.0), " · 0 s left");
+        assert_eq!(left(10.0, 1.0), " · finishing");
         for (seconds, share) in [(0.5, 0.5), (10.0, 0.0), (10.0, f64::NAN), (f64::NAN, 0.5)] {
             assert_eq!(left(seconds, share), "");
         }

@@ -1,7 +1,8 @@
-//! Messages: what happened and what was kept. Errors stay until they are dismissed.
+//! Messages: what happened and what was kept. Success passes by itself; warnings and errors
+//! stay until they are dismissed.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use pickglass::text::visible;
 
@@ -33,7 +34,8 @@ struct Toast {
     grade: Grade,
     text: String,
     kept: String,
-    until: Option<Instant>,
+    /// When it was seen first, or the pointer was on it last, s of the window's clock.
+    seen: Option<f64>,
     /// A file that came of it.
     made: Option<PathBuf>,
 }
@@ -42,10 +44,18 @@ struct Toast {
 #[derive(Default)]
 pub struct Toasts(Vec<Toast>);
 
-/// How long a message that needs no answer stays.
-const STAY: Duration = Duration::from_secs(6);
-/// More messages than this push out the oldest.
+/// How long a message that needs no answer stays, s.
+const STAY: f64 = 6.0;
+/// More messages than this push out the oldest of the least grave; the log has them all.
 const MOST: usize = 4;
+
+impl Toast {
+    /// Seconds until it passes by itself; `None` = never.
+    fn left(&self, now: f64) -> Option<f64> {
+        let passes = self.grade == Grade::Done;
+        passes.then(|| STAY - (now - self.seen.unwrap_or(now)))
+    }
+}
 
 impl Toasts {
     /// Says what happened and, where something might have been lost, what was kept.
@@ -56,11 +66,15 @@ impl Toasts {
             grade,
             text,
             kept: visible(&kept.into()).into_owned(),
-            until: (grade == Grade::Done).then(|| Instant::now() + STAY),
+            seen: None,
             made: None,
         });
-        if self.0.len() > MOST {
-            self.0.remove(0);
+        let least = [Grade::Done, Grade::Warning, Grade::Error].into_iter();
+        let place = |grade: Grade| self.0.iter().position(|toast| toast.grade == grade);
+        if self.0.len() > MOST
+            && let Some(oldest) = least.filter_map(place).next()
+        {
+            self.0.remove(oldest);
         }
     }
 
@@ -73,16 +87,20 @@ impl Toasts {
 
     /// Shows the messages above `bottom_right`.
     pub fn show(&mut self, ctx: &egui::Context, bottom_right: egui::Pos2) {
-        let now = Instant::now();
+        let now = ctx.input(|input| input.time);
+        for toast in &mut self.0 {
+            toast.seen.get_or_insert(now);
+        }
         self.0
-            .retain(|toast| toast.until.is_none_or(|until| now < until));
-        if let Some(next) = self.0.iter().filter_map(|toast| toast.until).min() {
-            ctx.request_repaint_after(next.saturating_duration_since(now));
+            .retain(|toast| toast.left(now).is_none_or(|left| left > 0.0));
+        let next = self.0.iter().filter_map(|toast| toast.left(now));
+        if let Some(next) = next.reduce(f64::min) {
+            ctx.request_repaint_after(Duration::from_secs_f64(next.clamp(0.0, STAY)));
         }
         if self.0.is_empty() {
             return;
         }
-        Area::new(Id::unique("toasts"))
+        let area = Area::new(Id::unique("toasts"))
             .order(Order::Foreground)
             .pivot(Align2::RIGHT_BOTTOM)
             .fixed_pos(bottom_right - vec2(tokens::PAD, tokens::PAD))
@@ -90,6 +108,10 @@ impl Toasts {
                 ui.set_width(tokens::TOAST_WIDTH);
                 self.0.retain(|toast| !toast_ui(ui, toast));
             });
+        // Nobody loses what he is reading.
+        if area.response.contains_pointer() {
+            self.0.iter_mut().for_each(|toast| toast.seen = Some(now));
+        }
     }
 }
 
@@ -153,4 +175,47 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
             }
         });
     dismissed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is left after the window's clock went on to `time`.
+    fn after(toasts: &mut Toasts, ctx: &egui::Context, time: f64) -> Vec<String> {
+        let input = egui::RawInput {
+            time: Some(time),
+            ..Default::default()
+        };
+        let _ = ctx.run_ui(input, |ui| {
+            let corner = ui.ctx().content_rect().right_bottom();
+            toasts.show(&ui.ctx().clone(), corner);
+        });
+        toasts.0.iter().map(|toast| toast.text.clone()).collect()
+    }
+
+    #[test]
+    fn success_passes_by_itself_and_what_went_wrong_stays() {
+        let ctx = egui::Context::default();
+        let mut toasts = Toasts::default();
+        toasts.say(Grade::Done, "saved", "");
+        toasts.say(Grade::Warning, "cut", "");
+        toasts.say(Grade::Error, "lost", "");
+        assert_eq!(after(&mut toasts, &ctx, 10.0), ["saved", "cut", "lost"]);
+        assert_eq!(after(&mut toasts, &ctx, 10.0 + STAY - 0.5).len(), 3);
+        assert_eq!(after(&mut toasts, &ctx, 10.5 + STAY), ["cut", "lost"]);
+        assert_eq!(after(&mut toasts, &ctx, 1e4), ["cut", "lost"]);
+    }
+
+    #[test]
+    fn the_gravest_are_pushed_out_last() {
+        let mut toasts = Toasts::default();
+        toasts.say(Grade::Error, "lost", "");
+        toasts.say(Grade::Warning, "cut", "");
+        for number in 0..MOST {
+            toasts.say(Grade::Done, format!("saved {number}"), "");
+        }
+        let texts: Vec<&str> = toasts.0.iter().map(|toast| toast.text.as_str()).collect();
+        assert_eq!(texts, ["lost", "cut", "saved 2", "saved 3"]);
+    }
 }

@@ -10,6 +10,7 @@ use super::draft::{DraftPane, Layer};
 use super::focus;
 use super::icons;
 use super::panes::Pane;
+use super::typing;
 use crate::command_table::{Command, Tool, row_of};
 use crate::tokens::{self, Palette};
 
@@ -127,7 +128,11 @@ fn steps_ui(ui: &mut egui::Ui, draft: &mut DraftPane, document: &Document) {
             .range(0..=sizes[axis])
             .speed(0.1)
             .custom_formatter(shown);
-        let field = ui.add(field);
+        let read = |text: &str| match text.trim().trim_end_matches(name).trim() {
+            "no" => Some(0.0),
+            number => typing::parsed(number),
+        };
+        let field = typing::number_by(ui, field, read);
         let spoken = format!("Step in {name}");
         field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &spoken));
         let tip = format!("Painting is repeated every so many {name}; 0 = not across them");

@@ -20,6 +20,9 @@ pub struct ClothView {
 }
 
 impl ClothView {
+    /// What is fitted into a pane is so much smaller than that.
+    pub const MARGIN: f32 = 1.06;
+
     /// `width_mm` of cloth round `centre_mm` across a pane.
     pub fn across(pane: Rect, centre_mm: [f32; 2], width_mm: f32) -> Self {
         let mut view = Self {
@@ -34,7 +37,8 @@ impl ClothView {
     /// A whole `size_mm` in the pane, with a margin.
     pub fn fitting(pane: Rect, centre_mm: [f32; 2], size_mm: [f32; 2]) -> Self {
         let aspect = pane.width().max(1.0) / pane.height().max(1.0);
-        Self::across(pane, centre_mm, 1.06 * size_mm[0].max(size_mm[1] * aspect))
+        let width_mm = Self::MARGIN * size_mm[0].max(size_mm[1] * aspect);
+        Self::across(pane, centre_mm, width_mm)
     }
 
     /// Width of cloth across a pane, mm.

@@ -18,13 +18,15 @@ use pickglass::volume::source::VoxelSource;
 use pickglass::yarn::tubes::YarnTube;
 
 use super::task::{Outcome, Running};
-use super::toasts::Grade;
-use super::{dialog, icons};
+use super::{dialog, typing};
 use crate::tokens::{self, Palette};
 use crate::{values, volumes};
 
 /// Crossings along the side of the window that is proposed where nothing is selected.
 const PROPOSED: u32 = 16;
+
+/// What stands for no number of voxels.
+const AS_CLOTH: &str = "as the cloth";
 
 /// What became of an export.
 pub enum Exported {
@@ -174,11 +176,11 @@ impl VolumeExport {
         let Some(form) = &mut self.form else {
             return;
         };
-        let mut choice = None;
-        let modal = dialog::modal(ctx, "volume").show(ctx, |ui| choice = form.ui(ui));
-        if modal.should_close() {
-            choice = Some(Choice::Close);
-        }
+        let shown = dialog::show(ctx, "volume", |ui| form.ui(ui));
+        let choice = match shown.escaped {
+            true => Some(Choice::Close),
+            false => shown.inner,
+        };
         match choice {
             Some(Choice::Close) => self.form = None,
             Some(Choice::Browse) => (self.browse).ask(
@@ -272,22 +274,26 @@ impl Form {
                 let names = ["First end, from the left", "First pick", "Ends", "Picks"];
                 for (name, value) in names.into_iter().zip(&mut self.wanted.region) {
                     let label = ui.label(name);
-                    ui.add(DragValue::new(value).range(1..=65_535))
+                    typing::number(ui, DragValue::new(value).range(1..=65_535))
                         .labelled_by(label.id);
                     ui.end_row();
                 }
                 let label = ui.label("Voxels a crossing");
                 let own = |value: f64, _: std::ops::RangeInclusive<usize>| match value as u32 {
-                    0 => "as the cloth".to_owned(),
+                    0 => AS_CLOTH.to_owned(),
                     count => count.to_string(),
                 };
+                let read = |text: &str| match text.trim() {
+                    AS_CLOTH => Some(0.0),
+                    number => typing::parsed(number),
+                };
                 let count = &mut self.wanted.voxels_a_crossing;
-                ui.add(DragValue::new(count).range(0..=256).custom_formatter(own))
-                    .labelled_by(label.id);
+                let field = DragValue::new(count).range(0..=256).custom_formatter(own);
+                typing::number_by(ui, field, read).labelled_by(label.id);
                 ui.end_row();
                 let label = ui.label("Level: each is half as fine");
-                ui.add(DragValue::new(&mut self.wanted.level).range(0..=COARSEST_LEVEL))
-                    .labelled_by(label.id);
+                let level = DragValue::new(&mut self.wanted.level).range(0..=COARSEST_LEVEL);
+                typing::number(ui, level).labelled_by(label.id);
                 ui.end_row();
                 ui.label("Thickness");
                 ui.horizontal(|ui| {
@@ -297,8 +303,12 @@ impl Form {
                 ui.end_row();
                 let label = ui.label("File");
                 ui.horizontal(|ui| {
-                    ui.add(egui::TextEdit::singleline(&mut self.wanted.path))
-                        .labelled_by(label.id);
+                    let field = ui.add(egui::TextEdit::singleline(&mut self.wanted.path));
+                    if typing::entered(ui, &field) {
+                        field.request_focus();
+                        choice = Some(Choice::Plan);
+                    }
+                    field.labelled_by(label.id);
                     if ui.button("Browse…").clicked() {
                         choice = Some(Choice::Browse);
                     }
@@ -319,14 +329,7 @@ impl Form {
             Some(Ok((_, text))) => {
                 ui.label(text);
             }
-            Some(Err(wrong)) => {
-                ui.horizontal(|ui| {
-                    icons::show(ui, Grade::Error, palette.error);
-                    ui.label(
-                        RichText::new(format!("Error: {}", visible(wrong))).color(palette.error),
-                    );
-                });
-            }
+            Some(Err(wrong)) => dialog::problem(ui, Some(wrong)),
             None => {
                 let text = "Nothing is written before its size is known.";
                 ui.label(RichText::new(text).color(palette.quiet));

@@ -11,6 +11,7 @@ mod bands;
 mod bands_picture;
 mod draw;
 mod grid;
+mod held_back;
 mod input;
 mod navigator;
 mod picture;
@@ -19,9 +20,9 @@ mod strokes;
 mod tiles;
 mod zone;
 
-use egui::Key;
+use egui::{Event, Key};
 use pickglass::design::{Structure, YarnId};
-use pickglass::edit::{Cells, Change, Clip, Document, Rect as Crossings};
+use pickglass::edit::{Change, Clip, Document, Rect as Crossings};
 
 use super::action::{Action, Button, Mark};
 use super::laid;
@@ -33,12 +34,11 @@ use bands::Band;
 pub use bands::draft as draft_of;
 pub use draw::end_number;
 use grid::{CellGrid, Look};
+pub use held_back::HeldBack;
 use reference::Reference;
 pub use strokes::tool_name;
 use zone::{Cell, Zone};
 
-/// Holding a tool's key for longer than this makes it a tool for the moment, s.
-const HELD: f64 = 0.3;
 /// Floats over more threads than this are long, where nobody says otherwise.
 const USUAL_LIMIT: u32 = 7;
 
@@ -80,11 +80,12 @@ impl Default for Steps {
     }
 }
 
-/// A tool that is used while its key is held.
+/// A tool whose key is down. It is given back with the key only where it was used
+/// meanwhile: how long the key was down says nothing, since between two slow frames a tap
+/// is as long as any.
 struct Held {
     key: Key,
     before: Tool,
-    since: f64,
     used: bool,
 }
 
@@ -100,9 +101,8 @@ pub struct DraftPane {
     /// Longest floats over picks and over ends that are not marked.
     pub limits: [u32; 2],
     pub mark: Mark,
-    /// What a stroke painted on the drawdown of a draft, and whether the warp is to be up:
-    /// it is asked about when the stroke ends.
-    pub held_back: Option<(Cells, bool)>,
+    /// What a stroke painted on the drawdown of a draft, until it ends.
+    pub held_back: Option<HeldBack>,
     pub yarns: [YarnId; 2],
     pub regions: [u16; 2],
     chosen_layer: Layer,
@@ -221,21 +221,17 @@ impl DraftPane {
         self.told.unwrap_or(tool_name(self.tool))
     }
 
-    /// Takes a tool; while its key stays down, for the moment only.
+    /// Takes a tool; for the moment only, where it is used while its key is down.
     pub fn take_tool(&mut self, ctx: &egui::Context, tool: Tool) {
         let key = super::menu::key_of(Command::Use(tool));
-        let (down, now) =
-            ctx.input(|input| (key.is_some_and(|key| input.key_down(key)), input.time));
-        if let (Some(key), true) = (key, down) {
-            // The key repeats while it is held: what was before stays what it was.
-            if self.held.as_ref().is_none_or(|held| held.key != key) {
-                self.held = Some(Held {
-                    key,
-                    before: self.tool,
-                    since: now,
-                    used: false,
-                });
-            }
+        // The key repeats while it is held: what was before stays what it was.
+        if key.is_none() || self.held.as_ref().map(|held| held.key) != key {
+            let down = key.filter(|key| ctx.input(|input| input.key_down(*key)));
+            self.held = down.map(|key| Held {
+                key,
+                before: self.tool,
+                used: false,
+            });
         }
         self.tool = tool;
     }
@@ -246,12 +242,16 @@ impl DraftPane {
         }
     }
 
-    /// Lets a tool that was held for the moment go.
-    fn let_go(&mut self, ui: &egui::Ui) {
+    /// Gives the tool back whose key was let go, if it was used. Where the key went up
+    /// after a press of the pointer in the same frame, the press comes first.
+    fn let_go(&mut self, ui: &egui::Ui, pressed: bool) {
         let Some(held) = &self.held else { return };
-        let (down, now) = ui.input(|input| (input.key_down(held.key), input.time));
-        if !down && !self.drawdown.in_stroke() {
-            if held.used || now - held.since > HELD {
+        let (down, waits) = ui.input(|input| {
+            let waits = !pressed && pressed_before(&input.events, held.key);
+            (input.key_down(held.key), waits)
+        });
+        if !down && !waits && !self.drawdown.in_stroke() {
+            if held.used {
                 self.tool = held.before;
             }
             self.held = None;
@@ -347,8 +347,9 @@ impl DraftPane {
         {
             self.laid = Some((areas, grid));
         }
-        self.let_go(ui);
+        self.let_go(ui, false);
         self.drawdown_touches(ui, document, &areas, &grid, actions);
+        self.let_go(ui, true);
         self.band_touches(ui, document, &areas, &grid, actions);
         self.draw(ui, document, &areas, &grid, &look);
         if let Some(reference) = &mut self.reference
@@ -396,6 +397,15 @@ impl DraftPane {
         let (areas, grid) = self.laid.expect("shown once");
         Band::WarpBar.place(&areas, &grid, (end, 0)).center()
     }
+}
+
+/// Whether the pointer was pressed before this key went up.
+fn pressed_before(events: &[Event], up: Key) -> bool {
+    let is_up =
+        |event: &Event| matches!(event, Event::Key { key, pressed: false, .. } if *key == up);
+    let is_press = |event: &Event| matches!(event, Event::PointerButton { pressed: true, .. });
+    let mut before = events.iter().take_while(|event| !is_up(event));
+    before.any(is_press)
 }
 
 /// Whether the drawdown follows from a shaft draft.

@@ -56,8 +56,9 @@ impl DraftPane {
         if let Some(selection) = self.selection {
             draw::selection(&painter, grid, selection);
         }
-        if let Some((cells, warp_up)) = &self.held_back {
-            draw::held_back(&painter, grid, design, cells, *warp_up);
+        if let Some(held) = &self.held_back {
+            draw::held_back(&painter, grid, design, &held.warp_up, true);
+            draw::held_back(&painter, grid, design, &held.weft_up, false);
         }
         self.draw_stamp(&painter, grid);
         let whole = ui.painter();

@@ -9,7 +9,7 @@ use pickglass::text::visible;
 use super::swatches;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
-use crate::window::focus;
+use crate::window::{focus, typing};
 
 /// Side of a thumbnail, in pixels and points.
 const THUMB: usize = 96;
@@ -19,9 +19,33 @@ const MOST_YARNS: usize = 24;
 /// The list.
 #[derive(Default)]
 pub struct Colourways {
-    /// The colourway that is being renamed, and its new name.
-    renaming: Option<(usize, String)>,
+    renaming: Option<Renaming>,
     thumbs: Option<Thumbs>,
+}
+
+/// A colourway that is being renamed.
+struct Renaming {
+    at: usize,
+    text: String,
+    /// The field was given the keyboard.
+    begun: bool,
+    problem: Option<String>,
+}
+
+impl Renaming {
+    /// Whether a name can be had; what is wrong with it is told.
+    fn check(&mut self, document: &Document) -> Option<Edit> {
+        let edit = Edit::RenameColourway {
+            colourway: self.at,
+            name: self.text.trim().to_owned(),
+        };
+        self.problem = match document.check(edit.clone()) {
+            _ if self.text.trim().is_empty() => Some("a colourway needs a name".to_owned()),
+            Err(error) => Some(error.to_string()),
+            Ok(()) => None,
+        };
+        self.problem.is_none().then_some(edit)
+    }
 }
 
 /// A picture of each colourway, the design's own yarns first.
@@ -58,7 +82,7 @@ impl Colourways {
                 for (place, (at, name, yarns)) in all.into_iter().enumerate() {
                     ui.vertical(|ui| {
                         ui.set_width(2.0 * THUMB as f32);
-                        self.one_ui(ui, place, at, name, yarns, actions);
+                        self.one_ui(ui, document, (place, at, name, yarns), actions);
                     });
                 }
             });
@@ -68,10 +92,8 @@ impl Colourways {
     fn one_ui(
         &mut self,
         ui: &mut egui::Ui,
-        place: usize,
-        at: Option<usize>,
-        name: &str,
-        yarns: &[Yarn],
+        document: &Document,
+        (place, at, name, yarns): (usize, Option<usize>, &str, &[Yarn]),
         actions: &mut Vec<Action>,
     ) {
         let side = THUMB as f32;
@@ -113,23 +135,9 @@ impl Colourways {
             return;
         };
         match &mut self.renaming {
-            Some((renamed, text)) if *renamed == at => {
-                let field = ui.add(TextEdit::singleline(text).char_limit(80));
-                let spoken = format!("New name of {shown}");
-                field.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::Role::TextInput, true, &spoken)
-                });
-                if field.lost_focus() {
-                    let name = text.trim().to_owned();
-                    if !name.is_empty() && ui.input(|input| !input.key_pressed(egui::Key::Escape)) {
-                        actions.push(Action::edit(Edit::RenameColourway {
-                            colourway: at,
-                            name,
-                        }));
-                    }
+            Some(renaming) if renaming.at == at => {
+                if rename_ui(ui, document, name, renaming, actions) {
                     self.renaming = None;
-                } else {
-                    field.request_focus();
                 }
             }
             _ => {
@@ -151,7 +159,12 @@ impl Colourways {
                 actions.push(Action::edit(Edit::UseColourway(at)));
             }
             if small("Rename", "Another name") {
-                self.renaming = Some((at, name.to_owned()));
+                self.renaming = Some(Renaming {
+                    at,
+                    text: name.to_owned(),
+                    begun: false,
+                    problem: None,
+                });
             }
             if small("Copy", "A colourway more that begins like this") {
                 let name = format!("{name} copy");
@@ -194,6 +207,38 @@ impl Colourways {
         }
         self.thumbs = Some(Thumbs { revision, textures });
     }
+}
+
+/// The field for a new name; true once it is left.
+fn rename_ui(
+    ui: &mut egui::Ui,
+    document: &Document,
+    name: &str,
+    renaming: &mut Renaming,
+    actions: &mut Vec<Action>,
+) -> bool {
+    let field = ui.add(TextEdit::singleline(&mut renaming.text).char_limit(80));
+    let spoken = format!("New name of {name}");
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &spoken));
+    if !std::mem::replace(&mut renaming.begun, true) {
+        field.request_focus();
+    }
+    if let Some(problem) = &renaming.problem {
+        ui.label(RichText::new(format!("Error: {problem}")).color(Palette::current(ui).error));
+    }
+    if typing::given_up(ui, &field) {
+        return true;
+    }
+    if !field.lost_focus() {
+        return false;
+    }
+    let edit = renaming.check(document);
+    if edit.is_none() && typing::entered(ui, &field) {
+        field.request_focus();
+    }
+    let left = edit.is_some();
+    actions.extend(edit.map(Action::edit));
+    left
 }
 
 /// The colours of a set of yarns; those of a colourway can be changed here.

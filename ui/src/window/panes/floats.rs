@@ -11,6 +11,7 @@ use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Mark};
 use crate::window::draft::end_number;
+use crate::window::typing;
 
 /// Floats that are listed.
 const MOST_LISTED: usize = 400;
@@ -129,14 +130,14 @@ impl Floats {
                         .speed(0.1)
                         .range(0.05..=100.0)
                         .suffix(" mm");
-                    if ui.add(field).labelled_by(label.id).changed() {
+                    if typing::number(ui, field).labelled_by(label.id).changed() {
                         *limit = ((mm / pitch[which]).round() as u32).clamp(1, MOST_THREADS);
                     }
                 } else {
                     let field = DragValue::new(limit)
                         .range(1..=MOST_THREADS)
                         .suffix(" threads");
-                    ui.add(field).labelled_by(label.id);
+                    typing::number(ui, field).labelled_by(label.id);
                 }
                 ui.add_space(tokens::GAP);
             }

@@ -19,6 +19,7 @@ use crate::window::icons;
 use crate::window::picture::shrunk;
 use crate::window::task::{Outcome, Task};
 use crate::window::toasts::Grade;
+use crate::window::typing;
 
 /// Longer side of a picture on the screen, pixels.
 const SHOWN: usize = 512;
@@ -36,6 +37,8 @@ type Made = Result<Box<Posterised>, String>;
 #[derive(Default)]
 pub struct Posterise {
     path: String,
+    /// The field of the path, where Enter was pressed in it and nothing was typed since.
+    field: Option<egui::Id>,
     reading: Option<Task<Read>>,
     choosing: Option<Task<Option<PathBuf>>>,
     problem: Option<String>,
@@ -146,6 +149,9 @@ impl Posterise {
             Outcome::Working => {}
             Outcome::Ready(Ok(photo)) => {
                 self.reading = None;
+                if let Some(field) = self.field.take() {
+                    ctx.memory_mut(|memory| memory.surrender_focus(field));
+                }
                 self.problem = photo.warnings.first().cloned();
                 self.take(ctx, Arc::new(photo.source), false);
             }
@@ -196,7 +202,14 @@ impl Posterise {
             let label = ui.label("Picture");
             let field = TextEdit::singleline(&mut self.path).hint_text("path of a photograph");
             let field = ui.add(field).labelled_by(label.id);
-            let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let entered = typing::entered(ui, &field);
+            if entered {
+                // Left once there is a picture of this path.
+                field.request_focus();
+                self.field = Some(field.id);
+            } else if field.changed() {
+                self.field = None;
+            }
             if (ui.button("Read").clicked() || entered) && !self.path.trim().is_empty() {
                 self.read(ui.ctx());
             }
@@ -241,7 +254,7 @@ impl Posterise {
             let mut ends = settings.ends.unwrap_or(960);
             let label = ui.label("Ends");
             let field = DragValue::new(&mut ends).range(2..=16_000);
-            if ui.add(field).labelled_by(label.id).changed() {
+            if typing::number(ui, field).labelled_by(label.id).changed() {
                 settings.ends = Some(ends);
             }
             ui.checkbox(&mut self.own_size, "own number of picks");
@@ -249,7 +262,7 @@ impl Posterise {
                 let mut picks = settings.picks.unwrap_or(960);
                 let label = ui.label("Picks");
                 let field = DragValue::new(&mut picks).range(2..=20_000);
-                ui.add(field).labelled_by(label.id);
+                typing::number(ui, field).labelled_by(label.id);
                 settings.picks = Some(picks);
                 let label = ui.label("fit");
                 let fits = egui::ComboBox::from_id_salt("fit");
@@ -271,7 +284,7 @@ impl Posterise {
                 .prefix("merge specks under ")
                 .suffix(" crossings");
             let name = "Merge specks under so many crossings";
-            ui.add(field)
+            typing::number(ui, field)
                 .widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
         });
     }

@@ -3,14 +3,16 @@
 
 use std::borrow::Cow;
 
-use egui::{ComboBox, DragValue, TextEdit};
+use egui::{ComboBox, DragValue, RichText, TextEdit};
 use pickglass::design::{Region, Regions, Srgb};
 use pickglass::edit::Edit;
 use pickglass::text::visible;
 
 use super::dragging::Dragging;
 use super::swatches;
+use crate::tokens::Palette;
 use crate::window::action::Action;
+use crate::window::typing;
 
 /// Regions that are offered to join.
 const MOST_OFFERED: usize = 256;
@@ -59,9 +61,15 @@ impl RegionDetails {
             };
             let field = TextEdit::singleline(text).char_limit(80);
             let field = ui.add(field).labelled_by(label.id);
-            if field.lost_focus() {
-                let name = text.trim().to_owned();
-                if !name.is_empty() && name != known.name {
+            let name = text.trim().to_owned();
+            if name.is_empty() && field.has_focus() {
+                let text = RichText::new("a region needs a name");
+                ui.label(text.color(Palette::current(ui).warning));
+            }
+            if typing::entered(ui, &field) && name.is_empty() {
+                field.request_focus();
+            } else if field.lost_focus() {
+                if !name.is_empty() && name != known.name && !typing::given_up(ui, &field) {
                     actions.push(Action::edit(Edit::NameRegion {
                         region,
                         name,
@@ -103,7 +111,7 @@ impl RegionDetails {
                     .clamp_existing_to_range(false)
                     .speed(0.1)
                     .prefix(format!("{name} "));
-                let field = ui.add(field);
+                let field = typing::number(ui, field);
                 *value = shown.saturating_sub(1);
                 let spoken = format!("First {name} of the weave of {}", visible(&known.name));
                 field.widget_info(|| {

@@ -9,6 +9,7 @@ use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
 use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::typing;
 
 /// Width of a crossing, points.
 const CROSSING: f32 = 30.0;
@@ -87,8 +88,7 @@ impl Section {
             };
             let mut number = counted(*thread);
             let label = ui.label("number");
-            if ui
-                .add(egui::DragValue::new(&mut number))
+            if typing::number(ui, egui::DragValue::new(&mut number))
                 .labelled_by(label.id)
                 .changed()
             {

@@ -11,6 +11,7 @@ use pickglass::limits::SETT_PER_CM;
 use super::later::Later;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::typing;
 
 /// Centimetres in an inch.
 const INCH: f32 = 2.54;
@@ -102,7 +103,7 @@ impl SettPane {
                         .range(SETT_PER_CM.start() * scale..=SETT_PER_CM.end() * scale)
                         .max_decimals(2)
                         .suffix(format!(" {unit}"));
-                    if ui.add(field).labelled_by(label.id).changed() {
+                    if typing::number(ui, field).labelled_by(label.id).changed() {
                         typed[which] = number / scale;
                         self.typed = Some(typed);
                     }
@@ -163,13 +164,13 @@ impl SettPane {
         let [warp, weft] = self.take_up.answer().copied().unwrap_or([0.0; 2]);
         ui.horizontal_wrapped(|ui| {
             let label = ui.label("Ends a dent");
-            ui.add(DragValue::new(&mut self.ends_a_dent).range(1..=64))
+            typing::number(ui, DragValue::new(&mut self.ends_a_dent).range(1..=64))
                 .labelled_by(label.id);
             for (which, name) in ["Shrinkage across", "along"].into_iter().enumerate() {
                 let label = ui.label(name);
                 let field = DragValue::new(&mut self.shrinkage[which]);
                 let field = field.speed(0.1).range(0.0..=60.0).suffix(" %");
-                ui.add(field).labelled_by(label.id);
+                typing::number(ui, field).labelled_by(label.id);
             }
         });
         let shrinkage = self.shrinkage.map(|percent| f64::from(percent) / 100.0);

@@ -6,7 +6,7 @@ use egui::{Key, RichText, ScrollArea, Sense, Stroke, TextEdit, TextureHandle, ve
 use pickglass::design::{Fill, LibraryWeave, library};
 
 use crate::tokens::{self, Palette};
-use crate::window::focus;
+use crate::window::{focus, typing};
 
 /// Crossings along a side of a thumbnail.
 const CROSSINGS: usize = 16;
@@ -61,6 +61,13 @@ impl WeavePicker {
                         || weave.family().to_lowercase().contains(&wanted)
                 };
                 let found: Vec<&'static LibraryWeave> = library().iter().filter(fits).collect();
+                if typing::entered(ui, &field) {
+                    match found.as_slice() {
+                        [only] => picked = Picked::Weave(Box::new(fill_of(only))),
+                        // The search goes on.
+                        _ => field.request_focus(),
+                    }
+                }
                 if found.is_empty() {
                     let quiet = Palette::current(ui).quiet;
                     ui.label(RichText::new("No weave of the library is called this.").color(quiet));

@@ -14,6 +14,7 @@ use super::later::Later;
 use super::{columns, swatches};
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Button, Mark};
+use crate::window::typing;
 
 /// Threads of an order that is offered as text.
 const MOST_WRITTEN: usize = 4096;
@@ -107,8 +108,7 @@ impl Yarns {
             });
             shown.response.labelled_by(label.id);
             let label = ui.label("plies");
-            ui.add(DragValue::new(&mut self.plies).range(1..=12))
-                .labelled_by(label.id);
+            typing::number(ui, DragValue::new(&mut self.plies).range(1..=12)).labelled_by(label.id);
         });
     }
 
@@ -205,7 +205,7 @@ impl Yarns {
                 let field = DragValue::new(&mut count)
                     .speed(speed)
                     .suffix(format!(" {}", self.unit.name()));
-                let field = ui.add(field).labelled_by(label.id);
+                let field = typing::number(ui, field).labelled_by(label.id);
                 self.changing.note(ui, &field, "yarn count", actions);
                 let tex = self.unit.to_tex(count, self.plies);
                 if field.changed() && (0.01..=1e6).contains(&tex) {
@@ -219,7 +219,7 @@ impl Yarns {
                     .speed(0.002)
                     .range(0.01..=20.0)
                     .suffix(" mm");
-                let field = ui.add(field).labelled_by(label.id);
+                let field = typing::number(ui, field).labelled_by(label.id);
                 self.changing.note(ui, &field, "yarn diameter", actions);
                 if field.changed() {
                     changed.diameter_mm = Some(diameter);
@@ -348,14 +348,20 @@ impl Yarns {
             typed.of = Some(document.revision());
             typed.problem = None;
         }
-        if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+        if typing::entered(ui, &field) {
             match stripes::parse(&typed.text, design.yarns()) {
                 Ok(order) => {
                     typed.problem = None;
                     actions.push(Action::edit(Edit::SetOrder { direction, order }));
                 }
-                Err(error) => typed.problem = Some(error.to_string()),
+                Err(error) => {
+                    typed.problem = Some(error.to_string());
+                    field.request_focus();
+                }
             }
+        } else if typing::given_up(ui, &field) {
+            // The stripes are written again as they are.
+            typed.of = None;
         }
         if let Some(problem) = &typed.problem {
             ui.horizontal(|ui| {

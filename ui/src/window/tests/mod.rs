@@ -3,6 +3,7 @@
 
 mod colours;
 mod drafts;
+mod fields;
 mod files;
 mod flow;
 mod hard;
@@ -12,6 +13,7 @@ mod large;
 mod opening;
 mod painting;
 mod pictures;
+mod slow_frames;
 mod states;
 mod times;
 mod viewing;

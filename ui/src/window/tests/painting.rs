@@ -190,6 +190,89 @@ fn a_drawdown_that_follows_from_a_draft_asks_what_is_meant() {
 }
 
 #[test]
+fn the_drawdown_stays_under_the_pointer_while_the_draft_is_derived() {
+    let mut window = build(builder(), None);
+    window.step();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::N);
+    wait_for(&mut window, "a new design", |window| {
+        says(window, "Drawdown of untitled")
+    });
+    window.state_mut().preview.freeze();
+    window.run_steps(2);
+    window.state_mut().asking.derive_always = true;
+    let shafts = |window: &Window| {
+        let design = window.state().document().expect("open").design().clone();
+        match design.structure() {
+            Structure::Draft(draft) => draft.shafts(),
+            _ => panic!("no draft any more"),
+        }
+    };
+    assert_eq!(shafts(&window), 4);
+    let home = |window: &Window| window.state().draft.place_of((0, 0));
+    let before = home(&window);
+    // Down a diagonal and back: every end becomes another, and needs a shaft of its own.
+    let cells: Vec<(i64, i64)> = (0..12).map(|at| (at, (5 * at) % 16)).collect();
+    let places: Vec<Pos2> = (cells.iter())
+        .map(|&cell| window.state().draft.place_of(cell))
+        .collect();
+    window.event(Event::PointerMoved(places[0]));
+    window.step();
+    button(&mut window, places[0], PointerButton::Primary, true);
+    for place in &places[1..] {
+        window.event(Event::PointerMoved(*place));
+        window.step();
+        window.step();
+        assert_eq!(home(&window), before, "it moved within the stroke");
+    }
+    assert_eq!(shafts(&window), 4, "derived once the stroke has ended");
+    button(&mut window, places[11], PointerButton::Primary, false);
+    window.run_steps(2);
+    assert!(
+        cells
+            .iter()
+            .all(|&(end, pick)| up(&window, end as u32, pick as u32))
+    );
+    assert!(shafts(&window) > 4, "another draft");
+    assert_ne!(home(&window), before, "which lies elsewhere");
+    assert_eq!(entries(&window), 1);
+}
+
+#[test]
+fn what_is_moved_on_a_draft_is_derived_once_it_lies() {
+    let mut window = build(builder(), None);
+    window.step();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::N);
+    wait_for(&mut window, "a new design", |window| {
+        says(window, "Drawdown of untitled")
+    });
+    window.state_mut().preview.freeze();
+    window.run_steps(2);
+    window.state_mut().asking.derive_always = true;
+    let drawdown = |window: &Window| window.state().document().expect("open").drawdown().clone();
+    let before = drawdown(&window);
+    window.key_press(Key::S);
+    window.run_steps(2);
+    stroke(&mut window, &[(2, 2), (4, 3)], PointerButton::Primary);
+    window.key_press(Key::M);
+    window.run_steps(2);
+    assert_eq!(window.state().draft.tool(), Tool::Move);
+    stroke(
+        &mut window,
+        &[(3, 3), (6, 9), (9, 10)],
+        PointerButton::Primary,
+    );
+    let after = drawdown(&window);
+    for end in 2..=4 {
+        for pick in 2..=3 {
+            assert_eq!(after.get(end + 6, pick + 7), before.get(end, pick));
+            assert!(!after.get(end, pick), "weft is left behind");
+        }
+    }
+    assert_eq!(after.get(7, 7), before.get(7, 7));
+    assert_eq!(entries(&window), 1);
+}
+
+#[test]
 fn threading_and_colour_bars_are_painted() {
     let mut window = build(builder(), None);
     window.step();

@@ -22,7 +22,7 @@ use crate::window::toasts::Grade;
 type Way = fn(&mut Window, &Path);
 
 /// By name: what is open (`None` = nothing, `""` = a new design), and what is done then.
-const STATES: [(&str, Option<&str>, Way); 28] = [
+const STATES: [(&str, Option<&str>, Way); 30] = [
     ("start", None, |window, _| {
         wait_for(window, "the thumbnails", |window| {
             window.state().start.is_drawn()
@@ -86,6 +86,13 @@ const STATES: [(&str, Option<&str>, Way); 28] = [
     }),
     ("volume", Some("oxford"), |window, _| {
         obey(window, Command::ExportVolume);
+    }),
+    ("settings", Some("oxford"), |window, _| {
+        obey(window, Command::Settings);
+    }),
+    ("path with a mistake", Some("oxford"), |window, _| {
+        open_by_path(window, "/absent/folder/of/a/weaver/shawl.wif");
+        wait_for(window, "what is wrong", |window| says(window, "Error: "));
     }),
     ("print", Some("oxford"), |window, _| {
         obey(window, Command::Print);

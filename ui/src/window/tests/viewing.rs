@@ -1,9 +1,12 @@
 //! Looking at the cloth: menus, pan and zoom, pause, and the export of a still.
 
+use egui::accesskit::Role;
 use egui::{Key, Modifiers, pos2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 
-use super::{build, builder, says, shows, wait_for};
+use pickglass::edit::Edit;
+
+use super::{Window, build, builder, says, shows, wait_for};
 use crate::window::worker::Quality;
 
 #[test]
@@ -63,6 +66,40 @@ fn the_menus_open_presets_and_change_the_view() {
         window.state().preview.asked().map(|asked| asked.view)
             == Some(pickglass::render::View::Back)
     });
+}
+
+#[test]
+fn edits_that_weave_the_same_cloth_keep_its_picture() {
+    let mut window = build(builder(), Some("herringbone"));
+    wait_for(&mut window, "a full picture", |window| {
+        window.state().preview.has_full_picture()
+    });
+    let asked = window.state().preview.generation();
+    let same = |window: &mut Window, what: &str| {
+        window.run_steps(4);
+        assert_eq!(window.state().preview.generation(), asked, "{what}");
+        assert!(window.state().preview.has_full_picture(), "{what}");
+    };
+    let edit = |window: &mut Window, edit: Edit| window.state_mut().edit(edit);
+    edit(&mut window, Edit::Rename("other".to_owned()));
+    same(&mut window, "another name");
+    assert!(shows(&window, "Cloth of other"), "which is told");
+    edit(&mut window, Edit::DeriveDraft { after: None });
+    same(&mut window, "a derived draft");
+    edit(&mut window, Edit::BecomeJacquard { then: None });
+    same(&mut window, "a jacquard");
+    for _ in 0..3 {
+        window.state_mut().step_back();
+        same(&mut window, "undo");
+    }
+    // Another colour is another cloth.
+    let mut yarn = window.state().document().expect("open").design().yarns()[0].clone();
+    yarn.colour = pickglass::design::Srgb(1, 200, 3);
+    let to = Box::new(yarn);
+    let yarn = pickglass::design::YarnId(0);
+    edit(&mut window, Edit::SetYarn { yarn, to });
+    window.run_steps(4);
+    assert_ne!(window.state().preview.generation(), asked);
 }
 
 #[test]
@@ -145,8 +182,8 @@ fn the_export_form_renders_into_a_file() {
         window.state().preview.pane.shown.is_some()
     });
     window.state_mut().export.defaults = crate::window::export::Defaults {
-        width: 64,
-        seconds: 0.1,
+        width: Some(64),
+        seconds: Some(0.1),
         path: Some(path.clone()),
     };
     window.key_press_modifiers(Modifiers::COMMAND, Key::E);
@@ -155,4 +192,65 @@ fn the_export_form_renders_into_a_file() {
     wait_for(&mut window, "the picture", |window| says(window, "Wrote "));
     let picture = image::open(&path).expect("a picture");
     assert_eq!(picture.width(), 64);
+    // Unless it is said otherwise, no background shows between the threads.
+    let written = std::fs::read(&path).expect("read");
+    let settings = b"backing: Itself";
+    assert!(
+        written
+            .windows(settings.len())
+            .any(|bytes| bytes == settings)
+    );
+}
+
+#[test]
+fn the_export_form_proposes_what_the_machine_can_do_and_says_the_error() {
+    let mut window = build(builder(), Some("oxford"));
+    wait_for(&mut window, "a measured picture", |window| {
+        window.state().preview.pane.measured().is_some()
+    });
+    window.state_mut().preview.pause();
+    let measured = window.state().preview.pane.measured();
+    let asked = window.state().preview.asked().expect("asked").clone();
+    let aspect = f64::from(asked.height) / f64::from(asked.width);
+    let proposal = crate::window::pace::propose(measured, aspect);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::E);
+    window.run_steps(6);
+    assert!(says(&window, "An error of about"));
+    let width = window.get_by_role_and_label(Role::SpinButton, "Width");
+    let width = width.accesskit_node().value().unwrap_or_default();
+    assert!(width.starts_with(&proposal.width.to_string()), "{width}");
+    // Another end of the refining, another expectation.
+    window.get_by_label("Refine until the error is").click();
+    window.run_steps(3);
+    assert!(!says(&window, "An error of about") && says(&window, "as this machine traced"));
+}
+
+#[test]
+fn the_settings_say_what_exemplars_take_and_bound_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.exemplars");
+    std::fs::write(&file, vec![0u8; 3_000_000]).expect("written");
+    let mut window = build(builder(), Some("oxford"));
+    window.state_mut().preview.freeze();
+    window.state_mut().store = pickglass::exemplar::ExemplarStore::at(folder.path(), 1 << 30);
+    let open = |window: &mut Window| {
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Comma);
+        window.run_steps(6);
+    };
+    open(&mut window);
+    assert!(says(&window, "3.0 MB"));
+    window.get_by_label("Empty").click();
+    window.run_steps(4);
+    assert!(!file.exists() && !says(&window, "3.0 MB"));
+    let field = window.get_by_role_and_label(Role::SpinButton, "At most");
+    field.focus();
+    window.run_steps(3);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.run_steps(2);
+    window.event(egui::Event::Text("0.5".to_owned()));
+    window.run_steps(2);
+    window.get_by_label("Apply").click();
+    window.run_steps(4);
+    assert!(!shows(&window, "Settings"), "the form is closed");
+    assert_eq!(window.state().store.limit(), 500_000_000);
 }

@@ -83,7 +83,7 @@ const STEPS: [(&str, u32, u32); 5] = [
     ("3", 2, 8),
     ("0", 2, 8),
     ("0", 1, 4),
-    ("0", 0, 8),
+    ("0", 0, 4),
 ];
 
 /// What is shown of a view, and the films alone, as they were shown before: whatever was
