@@ -9,7 +9,7 @@
 use std::path::{Path, PathBuf};
 
 use pickglass::design::{Design, Srgb, WeavePattern};
-use pickglass::formats::{Imported, LoadOptions, Place, load, load_bytes, wif};
+use pickglass::formats::{Imported, LoadOptions, Place, load, wif};
 
 /// The folder of drafts, or `None` after saying what is missing.
 fn drafts() -> Option<PathBuf> {

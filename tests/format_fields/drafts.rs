@@ -5,7 +5,7 @@ use std::path::Path;
 use pickglass::formats::field_table::Field;
 use pickglass::formats::{LoadOptions, load};
 
-use super::{Outcome, Twins, Walker};
+use crate::{Outcome, Twins, Walker};
 
 /// The walkers of all draft and loom formats.
 pub fn walkers() -> Vec<Walker> {

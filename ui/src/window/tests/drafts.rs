@@ -26,7 +26,7 @@ fn opened(path: &Path) -> Window {
 }
 
 fn drawdown(window: &Window) -> WeavePattern {
-    window.state().document().expect("open").drawdown().clone()
+    WeavePattern::clone(window.state().document().expect("open").drawdown())
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_loom_file_is_asked_which_side_lies_up() {
 /// Everything that is shown, but for fields in which texts are typed.
 fn labels(window: &Window) -> Vec<String> {
     let shown = window.query_all(By::new().predicate(|node| {
-        let role = node.accesskit_node().role();
+        let role = node.role();
         ![Role::TextInput, Role::MultilineTextInput, Role::TextRun].contains(&role)
     }));
     let texts = shown.flat_map(|node| {
