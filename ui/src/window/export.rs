@@ -273,7 +273,7 @@ fn form_ui(ui: &mut egui::Ui, form: &mut Form) -> Choice {
     if let Some(wrong) = &form.wrong {
         ui.horizontal(|ui| {
             icons::show(ui, Grade::Error, palette.error);
-            ui.label(RichText::new(format!("Error: {}", visible(&wrong))).color(palette.error));
+            ui.label(RichText::new(format!("Error: {}", visible(wrong))).color(palette.error));
         });
     }
     ui.add_space(tokens::GAP);

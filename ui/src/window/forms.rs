@@ -131,7 +131,7 @@ impl Form {
         };
         if let Some(wrong) = &wrong {
             let error = Palette::current(ui).error;
-            ui.label(RichText::new(format!("Error: {}", visible(&wrong))).color(error));
+            ui.label(RichText::new(format!("Error: {}", visible(wrong))).color(error));
         }
         ui.add_space(tokens::PAD);
         let mut filled = Filled::Open;

@@ -313,7 +313,7 @@ impl Form {
                 ui.horizontal(|ui| {
                     icons::show(ui, Grade::Error, palette.error);
                     ui.label(
-                        RichText::new(format!("Error: {}", visible(&wrong))).color(palette.error),
+                        RichText::new(format!("Error: {}", visible(wrong))).color(palette.error),
                     );
                 });
             }
