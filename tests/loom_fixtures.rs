@@ -232,7 +232,7 @@ fn colour_numbers_that_a_palette_lacks_get_the_directions_own() {
     assert!(told.contains("the 3 of @@Color Palet"), "{told}");
     let weft = changed("draft.dtx", b"2 2 1 2 2", b"2 7 1 2 2");
     assert_eq!(colours(&weft.design)[1], [blue, red, red, blue, blue]);
-    let none = changed("draft.dtx", b"255,255,255 \n200,30,40 \n0,0,255 \n", b"");
+    let none = changed("draft.dtx", b"@@Color Palet", b"@@Imprinted");
     assert_eq!(colours(&none.design), [vec![white; 7], vec![blue; 5]]);
     assert!(about_colours(&none).contains("7 ends and 5 picks"));
     // Stripes stay apart, to be dyed again.

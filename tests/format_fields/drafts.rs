@@ -153,6 +153,8 @@ fn dtx(folder: &Path, field: &Field, written_name: &str) -> Twins {
             base.insert(3, ("@@Liftplan".to_owned(), plan));
         }
         "@@Color Palette" => base[5].0 = "@@Color Palette".to_owned(),
+        // Without them there are usual colours.
+        "@@Warp Colors" | "@@Weft Colors" => base.retain(|part| part.0 != field.name),
         _ => {}
     }
     let mut with = base.clone();
@@ -288,6 +290,13 @@ fn dbw(folder: &Path, field: &Field, written_name: &str) -> Twins {
     let mut without: Vec<(&str, &str)> = DBW.to_vec();
     if field.name == "data/palette/data" {
         without.retain(|part| part.0 != "data/palette/data2");
+    }
+    // Without them there are usual colours.
+    if ["kettfarben", "schussfarben", "palette"]
+        .iter()
+        .any(|name| field.name.contains(name))
+    {
+        without.retain(|part| part.0 != field.name);
     }
     let mut with = without.clone();
     match with.iter_mut().find(|part| part.0 == field.name) {
