@@ -23,7 +23,7 @@ const BRICK: i32 = 4;
 const BLOCK: i32 = 4;
 /// Tentative collisions on the way through a brick above which it is worth walking voxel by
 /// voxel, and how many times denser than the mean of its voxels the densest then is.
-const RUGGED: [f32; 2] = [16.0, 4.0];
+const RUGGED: [f32; 2] = [16.0, 1.25];
 /// Voxels in a brick.
 const BRICK_VOXELS: usize = (BRICK * BRICK * BRICK) as usize;
 
@@ -247,7 +247,9 @@ impl DenseGrid {
         let bricks = size.to_array().map(brick).into_iter().product::<u64>();
         // Places, scales, majorants and where finer ones are; and the latter while they are made.
         let around = 4 * size_of::<f32>() as u64 + size_of::<usize>() as u64;
-        filled * size_of::<[Packed; BRICK_VOXELS]>() as u64 + bricks * around
+        // Voxels, and their majorants where bricks have such.
+        let brick = size_of::<[Packed; BRICK_VOXELS]>() + size_of::<[f32; BRICK_VOXELS]>();
+        filled * brick as u64 + bricks * around
     }
 
     /// Voxels along each axis.

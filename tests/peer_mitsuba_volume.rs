@@ -75,7 +75,13 @@ fn mitsuba_renders_the_exported_scene_alike() {
         let thinner = thinner(&grid);
         let film = shoot(&thinner, &camera, &points(&lights), &settings).film;
         write_film(folder.path(), "thinner", &film);
+        // The scene's files are those beside it, also where others of their names lie.
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let small = ClothWindow::new(&cloth, region, Part::Face, Some(3)).expect("a window");
+        let other = elsewhere.path().join("cloth.vol");
+        volume::write(&small, &other, &[], &Job::new()).expect("written");
         let output = Command::new(&python)
+            .current_dir(elsewhere.path())
             .arg(script())
             .arg("scene")
             .arg(folder.path())

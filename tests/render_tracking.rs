@@ -199,6 +199,36 @@ fn majorants_hold_and_lowered_ones_are_noticed() {
 }
 
 #[test]
+fn a_walk_at_its_cap_is_absorbed_and_told() {
+    // Bounds a hundred million times too large cost steps without end.
+    let grid = cube(8, 2.0, Vec3::Z, 1.0, 1.0);
+    let slow = Lowered(&grid, 1e8);
+    let mut counters = Counters::default();
+    let start = ray(Vec3::new(0.1, 0.2, 3.0), Vec3::NEG_Z);
+    let mut random = Random::new(1, 2, 3);
+    let hit = slow.collide(&start, 9.0, &mut random, &mut counters);
+    assert!(hit.is_some_and(|hit| hit.absorbed), "{hit:?}");
+    let through = slow.transmittance(&start, 9.0, 0.0, &mut random, &mut counters);
+    assert_eq!((through, counters.capped_walks), (0.0, 2));
+    assert!(counters.warnings()[0].starts_with("2 walks"));
+    let lights = LightRig::new("dome", Vec::new(), Sky::Dome(Dome::uniform(Vec3::ONE)));
+    let camera = View::Face.camera(Vec3::ZERO, 0.5, 4, 4);
+    let settings = RenderSettings {
+        spp: 2,
+        ..RenderSettings::default()
+    };
+    let black = shoot(&slow, &camera, &lights, &settings);
+    for pixel in black.film.pixels() {
+        assert_eq!((pixel.mean(), pixel.alpha()), (Vec3::ZERO, 1.0));
+    }
+    assert_eq!(black.counters.capped_walks, 32);
+    // Control: with bounds that are right nothing is given up.
+    let sound = shoot(&grid, &camera, &lights, &settings);
+    assert_eq!(sound.counters.capped_walks, 0);
+    assert!(sound.counters.warnings().is_empty());
+}
+
+#[test]
 fn scale_of_a_million_violates_nothing_and_ends() {
     let scene = silk_satin(4);
     let grid = scene.grid_with(Taps::Nearest, |voxel| GridVoxel {

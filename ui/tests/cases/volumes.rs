@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::case_04::picture;
-use super::program::Place;
+use super::program::{Place, Said};
 
 #[test]
 fn case_10_voxels_behind_the_head_and_heads_beside_the_voxels_are_read() {
@@ -199,4 +199,29 @@ fn case_20_a_volume_is_looked_up_as_its_scene_says() {
     };
     assert!(pixels(&picture) == pixels(&nearest));
     assert!(pixels(&picture) != pixels(&filtered));
+}
+
+#[test]
+fn case_15_volumes_ask_for_memory_before_they_are_read() {
+    let place = Place::of("10");
+    let head = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 256 256 256\nencoding: raw\n\
+                spacings: 0.01 0.01 0.01\ndata file: voxels.raw\n";
+    std::fs::write(place.path("a.nhdr"), head).expect("written");
+    let still = |voxels: u8, memory: &str| {
+        std::fs::write(place.path("voxels.raw"), vec![voxels; 1 << 24]).expect("written");
+        let arguments = [
+            "still", "a.nhdr", "-o", "a.png", "--size", "8x8", "--spp", "1",
+        ];
+        let mut command = place.command(&arguments);
+        let output = command.env("PICKGLASS_MEMORY", memory).output();
+        Said::of(output.expect("the program starts"))
+    };
+    let said = still(1, "100M").refused();
+    assert!(
+        said.contains("a.nhdr") && said.contains("PICKGLASS_MEMORY"),
+        "{said}"
+    );
+    // Empty voxels take none, and more memory does.
+    still(0, "100M").done();
+    still(1, "300M").done();
 }
