@@ -28,7 +28,7 @@ fn thick_yarns_are_taken_to_touch_in_little_memory() {
         let said = limited(
             &place,
             4 << 20,
-            &[&line[..], &["--set", "level=1"]].concat(),
+            &[&line[..], &["--set", "level=3"]].concat(),
         )
         .done();
         let told = said.err.matches("they are taken to touch").count();
