@@ -40,7 +40,11 @@ pub struct Walker {
 fn fault(walker: &Walker, field: &Field, written_name: &str) -> Option<String> {
     let folder = tempfile::tempdir().expect("a folder");
     let twins = (walker.twins)(folder.path(), field, written_name);
-    judge(field, (walker.read)(&twins.with), (walker.read)(&twins.without))
+    judge(
+        field,
+        (walker.read)(&twins.with),
+        (walker.read)(&twins.without),
+    )
 }
 
 /// What is wrong when these are read with a field and without it.
@@ -132,7 +136,10 @@ fn tables_and_walkers_belong_together_and_hold_each_row_once() {
     let mut rows: Vec<String> = (tables.iter())
         .flat_map(|table| table.fields.iter().map(move |field| (table.format, field)))
         .map(|(format, field)| {
-            assert!(!field.example.is_empty() && !field.name.is_empty(), "{format}");
+            assert!(
+                !field.example.is_empty() && !field.name.is_empty(),
+                "{format}"
+            );
             format!("{format} {} {}", field.name, field.example)
         })
         .collect();

@@ -34,6 +34,7 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         dials: vec![("level".to_owned(), args.level.to_string())],
         ..StillRequest::default()
     };
+    note_warnings(&still::light_warnings(&request)?);
     let progress = Progress::new();
     let job = interruptible(&progress);
     let there = request.clone().over(&opened.design, &region);

@@ -132,7 +132,7 @@ impl Posterise {
             Outcome::Working => {}
             Outcome::Ready(Ok(photo)) => {
                 self.reading = None;
-                self.problem = photo.warnings.first().cloned();
+                self.problem = (!photo.warnings.is_empty()).then(|| photo.warnings.join("\n"));
                 self.take(ctx, Arc::new(photo.source));
             }
             Outcome::Ready(Err(problem)) => {
