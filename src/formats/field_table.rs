@@ -49,5 +49,7 @@ pub struct Table {
 
 /// The tables of all readers.
 pub fn tables() -> Vec<Table> {
-    Vec::new()
+    let mut tables = vec![super::exr::FIELDS];
+    tables.extend(super::image::TABLES);
+    tables
 }

@@ -1,8 +1,15 @@
 //! Who walks which table.
 
-use super::Walker;
+#[path = "exr.rs"]
+mod exr;
+#[path = "images.rs"]
+mod images;
+
+use super::{Outcome, Twins, Walker};
 
 /// One walker a format.
 pub fn walkers() -> Vec<Walker> {
-    Vec::new()
+    let mut walkers = exr::walkers();
+    walkers.extend(images::walkers());
+    walkers
 }
