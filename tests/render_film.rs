@@ -423,6 +423,25 @@ fn exr_gives_back_every_layer() {
     assert!(exr::read_environment(&folder.path().join("none.exr")).is_err());
 }
 
+/// Each encoding keeps its attributes in a table with an order of its own.
+#[test]
+fn equal_films_are_files_of_equal_bytes() {
+    let (film, per_mm) = small_film();
+    let texts: Vec<(String, String)> = ["Software", "Title", "Design", "Settings", "Host", "View"]
+        .map(|key| (key.to_owned(), format!("of {key}")))
+        .to_vec();
+    let once = exr::encode(&film, per_mm, &texts).expect("encodes");
+    for _ in 0..8 {
+        assert!(once == exr::encode(&film, per_mm, &texts).expect("encodes"));
+    }
+    // Their order means nothing: the file is read as before.
+    let meta = ::exr::meta::MetaData::read_from_buffered(once.as_slice(), true).expect("a header");
+    let other = &meta.headers[0].own_attributes.other;
+    assert_eq!(other.len(), texts.len() + 1);
+    // Negative control: another text is another file.
+    assert!(once != exr::encode(&film, per_mm, &texts[1..]).expect("encodes"));
+}
+
 fn channel_at(channel: &dyn Fn(&str) -> Vec<f32>, name: &str, k: usize) -> f32 {
     channel(name)[k]
 }

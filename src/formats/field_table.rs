@@ -49,7 +49,7 @@ pub struct Table {
 
 /// The tables of all readers.
 pub fn tables() -> Vec<Table> {
-    vec![
+    let mut tables = vec![
         super::wif::FIELDS,
         super::dtx::FIELDS,
         super::wpo::FIELDS,
@@ -58,5 +58,8 @@ pub fn tables() -> Vec<Table> {
         super::volume::VOL_FIELDS,
         super::volume::NRRD_FIELDS,
         super::volume::META_IMAGE_FIELDS,
-    ]
+        super::exr::FIELDS,
+    ];
+    tables.extend(super::image::TABLES);
+    tables
 }

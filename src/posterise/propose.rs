@@ -4,7 +4,7 @@
 use super::series::{DARKEST, LIGHTEST, shadow_weave};
 use super::settings::PosteriseSettings;
 use crate::cloth::expected::expected_colour;
-use crate::design::{Design, Fill, Lab, Sett, Srgb, WeavePattern, Yarn, YarnId, YarnMaps, lab};
+use crate::design::{Design, Fill, Lab, Sett, Srgb, Yarn, YarnId, YarnMaps, delta_e_00, lab};
 
 /// Diameter over pitch of the yarns: dense cloth, as jacquards are, that hides what lies
 /// behind it.
@@ -16,10 +16,10 @@ const TRIED: usize = 8;
 const DARKER: [f32; 3] = [1.0, 0.5, 0.25];
 /// How much lighter the weft is tried.
 const LIGHTER: [f32; 3] = [1.0, 1.4, 2.0];
-/// What squared differences of a* and b* count beside those of L*.
-const HUE_WEIGHT: f64 = 0.1;
 /// A black that dyers reach.
 const BLACK: Srgb = Srgb(0x1c, 0x1b, 0x1d);
+/// A white that bleaching reaches.
+const WHITE: Srgb = Srgb(0xfd, 0xfc, 0xfd);
 /// No dye leaves less light than this in any channel, linear.
 const LEAST_LIGHT: f32 = 0.01;
 
@@ -90,18 +90,11 @@ fn pair_in(settings: &PosteriseSettings, [warp, weft]: [Srgb; 2]) -> Pair {
     }
 }
 
-/// How far a mixture is from a colour in the eyes of a picture: two yarns meet lightness,
-/// which makes the drawing, and hue only by luck.
-fn unlikeness(asked: Lab, shown: Lab) -> f64 {
-    let [l, a, b] = [0, 1, 2].map(|at| (asked[at] - shown[at]).powi(2));
-    l + HUE_WEIGHT * (a + b)
-}
-
-/// The colours that most of a half of the picture has, scaled in light, and `own`.
-fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], own: Srgb) -> Vec<Srgb> {
+/// The colours that most of a half of the picture has, scaled in light, and `usual` ones.
+fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], usual: &[Srgb]) -> Vec<Srgb> {
     let mut most = half.to_vec();
     most.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    let mut found = vec![own];
+    let mut found = usual.to_vec();
     for (colour, _) in most.into_iter().take(TRIED) {
         let light = colour.to_linear();
         found.extend(scales.map(|scale| {
@@ -116,8 +109,8 @@ fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], own: Srgb) -> Vec<Srgb> {
     found
 }
 
-/// The dark and the light yarn whose mixtures are nearest to the picture's colours, in mean
-/// squares weighted with coverage; the warp is the dark one.
+/// The dark and the light yarn with which the picture's colours, woven as [`weaves`] would
+/// weave them, are expected to be least off; the warp is the dark one.
 fn pair(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Pair {
     if let Some(colours) = settings.yarns {
         return pair_in(settings, colours);
@@ -128,32 +121,83 @@ fn pair(asked: &[Srgb], coverage: &[f64], settings: &PosteriseSettings) -> Pair 
         .zip(coverage.iter().copied())
         .collect();
     let (dark, light) = colours.split_at(colours.len().div_ceil(2));
-    let darks = candidates(dark, DARKER, BLACK);
-    let lights = candidates(light, LIGHTER, settings.family.numbers().undyed);
-    let labs: Vec<_> = asked.iter().map(|c| lab(c.to_linear())).collect();
-    let weaves: Vec<Fill> = (LIGHTEST..=DARKEST).step_by(8).map(shadow_weave).collect();
-    let patterns: Vec<&WeavePattern> = weaves.iter().map(Fill::pattern).collect();
-    let mut best = (f64::INFINITY, [BLACK, settings.family.numbers().undyed]);
+    let undyed = settings.family.numbers().undyed;
+    let darks = candidates(dark, DARKER, &[BLACK]);
+    let lights = candidates(light, LIGHTER, &[undyed, WHITE]);
+    let wanted = Wanted::of(asked, coverage);
+    let series = series(asked.len());
+    let mut best = (f64::INFINITY, [BLACK, undyed]);
     for &warp in &darks {
         for &weft in &lights {
-            let pair = pair_in(settings, [warp, weft]);
-            let shown: Vec<_> = (patterns.iter())
-                .map(|weave| lab(expected_colour(weave, &pair.warp, &pair.weft)))
-                .collect();
-            let off: f64 = (labs.iter().zip(coverage))
-                .map(|(asked, share)| {
-                    let nearest = shown
-                        .iter()
-                        .min_by(|a, b| (a[0] - asked[0]).abs().total_cmp(&(b[0] - asked[0]).abs()));
-                    share * nearest.map_or(0.0, |shown| unlikeness(*asked, *shown))
-                })
-                .sum();
+            let off = wanted.off(&series, &pair_in(settings, [warp, weft]));
             if off < best.0 {
                 best = (off, [warp, weft]);
             }
         }
     }
     pair_in(settings, best.1)
+}
+
+/// The colours that are to be shown.
+struct Wanted {
+    colours: Vec<Lab>,
+    coverage: Vec<f64>,
+}
+
+impl Wanted {
+    fn of(asked: &[Srgb], coverage: &[f64]) -> Self {
+        Self {
+            colours: asked.iter().map(|colour| lab(colour.to_linear())).collect(),
+            coverage: coverage.to_vec(),
+        }
+    }
+
+    /// For each colour the place in `shown`, the colours of a series, of the one whose
+    /// lightness is nearest, no two alike as long as there are enough.
+    fn chosen(&self, shown: &[Lab]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..shown.len()).collect();
+        order.sort_by(|&a, &b| shown[a][0].total_cmp(&shown[b][0]).then(a.cmp(&b)));
+        let levels: Vec<f64> = order.iter().map(|&at| shown[at][0]).collect();
+        let wanted: Vec<(f64, f64)> = (self.colours.iter().zip(&self.coverage))
+            .map(|(colour, coverage)| (colour[0], coverage.sqrt() + 1e-3))
+            .collect();
+        let chosen = rising(&wanted, &levels);
+        chosen.into_iter().map(|level| order[level]).collect()
+    }
+
+    /// Mean and root mean square of ΔE₀₀ over the cloth, added: a pair that is better in
+    /// both is never passed over, and none buys a small mean with one colour far off.
+    fn off(&self, series: &[Fill], pair: &Pair) -> f64 {
+        let shown = shown(series, pair);
+        let (mut mean, mut squares, mut all) = (0.0, 0.0, 0.0);
+        let parts = self.colours.iter().zip(&self.coverage);
+        for ((&colour, &share), at) in parts.zip(self.chosen(&shown)) {
+            let off = delta_e_00(colour, shown[at]);
+            mean += share * off;
+            squares += share * off * off;
+            all += share;
+        }
+        (mean + (squares * all).sqrt()) / f64::max(all, 1e-12)
+    }
+}
+
+/// The weaves that `colours` colours are chosen from: twice as many, so that lightness is
+/// met well.
+fn series(colours: usize) -> Vec<Fill> {
+    let steps = (DARKEST - LIGHTEST) as usize;
+    let step = [8, 4, 2]
+        .into_iter()
+        .find(|step| steps / step + 1 >= 2 * colours);
+    (LIGHTEST..=DARKEST)
+        .step_by(step.unwrap_or(1))
+        .map(shadow_weave)
+        .collect()
+}
+
+/// What each weave of a series is expected to show.
+fn shown(series: &[Fill], pair: &Pair) -> Vec<Lab> {
+    let colour = |fill: &Fill| lab(expected_colour(fill.pattern(), &pair.warp, &pair.weft));
+    series.iter().map(colour).collect()
 }
 
 /// A weave for every colour that does not keep one: the weave of the series whose expected
@@ -164,29 +208,14 @@ pub(super) fn weaves(
     kept: &[Option<usize>],
     pair: &Pair,
 ) -> Vec<Fill> {
-    // Twice as many weaves as colours, so that lightness is met well.
-    let steps = (DARKEST - LIGHTEST) as usize;
-    let step = [8, 4, 2]
-        .into_iter()
-        .find(|step| steps / step + 1 >= 2 * asked.len());
-    let series: Vec<Fill> = (LIGHTEST..=DARKEST)
-        .step_by(step.unwrap_or(1))
-        .map(shadow_weave)
-        .collect();
-    let lightness = |fill: &Fill| lab(expected_colour(fill.pattern(), &pair.warp, &pair.weft))[0];
-    let mut shown: Vec<(f64, usize)> = (series.iter().enumerate())
-        .map(|(at, fill)| (lightness(fill), at))
-        .collect();
-    shown.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let series = series(asked.len());
     let free: Vec<usize> = (0..asked.len()).filter(|&at| kept[at].is_none()).collect();
-    let wanted: Vec<(f64, f64)> = (free.iter())
-        .map(|&at| (lab(asked[at].to_linear())[0], coverage[at].sqrt() + 1e-3))
-        .collect();
-    let levels: Vec<f64> = shown.iter().map(|&(lightness, _)| lightness).collect();
-    let chosen = rising(&wanted, &levels);
-    let mut weaves = vec![series[shown[0].1].clone(); asked.len()];
-    for (&at, level) in free.iter().zip(chosen) {
-        weaves[at] = series[shown[level].1].clone();
+    let of_free = |at: &usize| (asked[*at], coverage[*at]);
+    let (colours, shares): (Vec<Srgb>, Vec<f64>) = free.iter().map(of_free).unzip();
+    let chosen = Wanted::of(&colours, &shares).chosen(&shown(&series, pair));
+    let mut weaves = vec![series[0].clone(); asked.len()];
+    for (&at, weave) in free.iter().zip(chosen) {
+        weaves[at] = series[weave].clone();
     }
     weaves
 }
@@ -263,6 +292,88 @@ mod tests {
             }
         }
         assert_eq!(cost(&rising(&three, &levels)), least);
+    }
+
+    /// Mean and root mean square of ΔE₀₀ of a picture woven of a pair.
+    fn off(asked: &[Srgb], coverage: &[f64], pair: &Pair) -> [f64; 2] {
+        let kept = vec![None; asked.len()];
+        let woven = weaves(asked, coverage, &kept, pair);
+        let each: Vec<f64> = (asked.iter().zip(shown(&woven, pair)))
+            .map(|(colour, shown)| delta_e_00(lab(colour.to_linear()), shown))
+            .collect();
+        let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
+            each.iter()
+                .zip(coverage)
+                .map(|(&e, share)| share * of(e))
+                .sum()
+        };
+        [sum(&|e| e), sum(&|e| e * e).sqrt()]
+    }
+
+    #[test]
+    fn no_simple_pair_is_better_in_mean_and_in_the_worst_colours() {
+        let settings = PosteriseSettings::default();
+        let pictures: [&[Srgb]; 4] = [
+            &[
+                Srgb(20, 20, 200),
+                Srgb(220, 20, 20),
+                Srgb(30, 200, 30),
+                Srgb(255, 255, 255),
+            ],
+            &[Srgb(90, 60, 30), Srgb(120, 130, 60), Srgb(220, 190, 150)],
+            &[Srgb(0, 0, 0), Srgb(255, 255, 0)],
+            &[
+                Srgb(60, 60, 60),
+                Srgb(110, 110, 115),
+                Srgb(160, 160, 160),
+                Srgb(210, 210, 210),
+            ],
+        ];
+        for asked in pictures {
+            let coverage = vec![1.0 / asked.len() as f64; asked.len()];
+            let found = off(asked, &coverage, &pair(asked, &coverage, &settings));
+            let (dark, light) = (asked[0], asked[asked.len() - 1]);
+            for colours in [
+                [BLACK, settings.family.numbers().undyed],
+                [BLACK, WHITE],
+                [dark, light],
+                [BLACK, light],
+                [dark, WHITE],
+            ] {
+                let simple = off(asked, &coverage, &pair_in(&settings, colours));
+                let sum = |both: [f64; 2]| both[0] + both[1];
+                assert!(
+                    sum(found) <= sum(simple) + 1e-9,
+                    "{found:?} {simple:?} {colours:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn grain_does_not_change_the_pair() {
+        let settings = PosteriseSettings::default();
+        let picture = [
+            Srgb(25, 25, 200),
+            Srgb(220, 25, 25),
+            Srgb(30, 200, 30),
+            Srgb(254, 254, 254),
+        ];
+        let coverage = [0.25; 4];
+        let lab_of = |yarn: &Yarn| lab(yarn.colour.to_linear());
+        let calm = pair(&picture, &coverage, &settings);
+        for grain in 0..16u8 {
+            let shift = |value: u8, bit: u8| match grain >> bit & 1 {
+                0 => value - 1,
+                _ => value + 1,
+            };
+            let grainy = picture.map(|Srgb(r, g, b)| Srgb(shift(r, 0), shift(g, 1), shift(b, 2)));
+            let found = pair(&grainy, &coverage, &settings);
+            for (a, b) in [(&calm.warp, &found.warp), (&calm.weft, &found.weft)] {
+                let apart = delta_e_00(lab_of(a), lab_of(b));
+                assert!(apart < 3.0, "{grain}: {} {}", a.colour, b.colour);
+            }
+        }
     }
 
     #[test]

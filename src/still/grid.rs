@@ -91,3 +91,11 @@ pub fn scene_files(
     };
     Ok(mitsuba::scene(path, frame, &scene)?)
 }
+
+/// What is remarked on about a light's file, one line each.
+///
+/// # Errors
+/// When the light is not usable.
+pub fn light_warnings(request: &StillRequest) -> Result<Vec<String>, StillError> {
+    Ok(lights(&request.light, request.view)?.warnings)
+}

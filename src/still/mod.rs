@@ -24,7 +24,7 @@ pub use carried::{Carried, Sighted};
 pub use effects::{DIALS, DialError, EFFECTS};
 pub use engine::Engine;
 pub use first_sight::{FirstSight, SightTables};
-pub use grid::{render_grid, scene_files};
+pub use grid::{light_warnings, render_grid, scene_files};
 pub use part::check_view;
 pub use picture::{Pass, Still, place_on, render, render_still, usual_width_mm};
 pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};

@@ -53,6 +53,8 @@ pub struct Tiff {
     pub rows_per_strip: u32,
     pub tile: Option<(u32, u32)>,
     pub colour_map: Vec<u16>,
+    /// More fields: tag, type (3 = u16, 4 = u32, 5 = fractions, 7 = bytes), values.
+    pub extra: Vec<(u16, u16, Vec<u32>)>,
     pub big_endian: bool,
 }
 
@@ -71,6 +73,7 @@ impl Tiff {
             rows_per_strip: height,
             tile: None,
             colour_map: Vec::new(),
+            extra: Vec::new(),
             big_endian: false,
         }
     }
@@ -154,6 +157,7 @@ impl Tiff {
             let map = self.colour_map.iter().map(|&value| value.into()).collect();
             fields.push((320, 3, map));
         }
+        fields.extend(self.extra.iter().cloned());
         fields.sort_by_key(|field| field.0);
         let mut entries = Vec::new();
         for (tag, kind, values) in &fields {
@@ -162,11 +166,13 @@ impl Tiff {
                     .iter()
                     .flat_map(|&value| self.u16(value as u16))
                     .collect(),
+                7 => values.iter().map(|&value| value as u8).collect(),
                 _ => values.iter().flat_map(|&value| self.u32(value)).collect(),
             };
             entries.extend(self.u16(*tag));
             entries.extend(self.u16(*kind));
-            entries.extend(self.u32(values.len() as u32));
+            let count = values.len() / if *kind == 5 { 2 } else { 1 };
+            entries.extend(self.u32(count as u32));
             if bytes.len() <= 4 {
                 let mut four = bytes;
                 four.resize(4, 0);

@@ -48,7 +48,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
     let mut raster = match (header.compression, header.bits) {
         (RGB, 1 | 2 | 4 | 8) => flat(bytes, &header, width, height, warnings)?,
         (RLE8, 8) | (RLE4, 4) => runs(bytes, &header, width, height, warnings)?,
-        (_, 16 | 24 | 32) => true_colour(bytes, width, height)?,
+        (_, 16 | 24 | 32) => true_colour(bytes, width, height, warnings)?,
         (compression, bits) => {
             let problem = format!("{bits} bits a pixel with compression {compression} is not read");
             return Err(Fault::new(problem, SAVE_PLAIN));
@@ -238,9 +238,15 @@ fn runs(
 }
 
 /// 16, 24 and 32 bits, with or without masks.
-fn true_colour(bytes: &[u8], width: u32, height: u32) -> Result<Raster, Fault> {
+fn true_colour(
+    bytes: &[u8],
+    width: u32,
+    height: u32,
+    warnings: &mut Vec<String>,
+) -> Result<Raster, Fault> {
+    super::check_coloured((width, height))?;
     let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(Fault::damaged)?;
-    super::photo::raster(decoder, width, height, &mut Vec::new())
+    super::photo::raster(decoder, width, height, warnings)
 }
 
 #[cfg(test)]

@@ -46,7 +46,7 @@ pub fn design(decoded: Decoded, name: &str, options: &LoadOptions) -> Result<Imp
     let what = options
         .image
         .what
-        .unwrap_or_else(|| propose(&colours, lossy));
+        .unwrap_or_else(|| propose(&raster, &colours, lossy));
     if lossy && what != ImageAs::Picture {
         let format = decoded.encoding.name();
         warnings.push(format!(
@@ -102,17 +102,61 @@ pub fn design(decoded: Decoded, name: &str, options: &LoadOptions) -> Result<Imp
     Ok(Imported { design, warnings })
 }
 
-/// What an image is, by its colours.
-fn propose(colours: &Colours, lossy: bool) -> ImageAs {
+/// What an image is, by its colours and how they lie.
+fn propose(raster: &Raster, colours: &Colours, lossy: bool) -> ImageAs {
     match colours {
         _ if lossy => ImageAs::Picture,
         Colours::Many => ImageAs::Picture,
         Colours::Few(few) if few.len() <= 2 && few.iter().all(|entry| plain(entry.0)) => {
             ImageAs::Weave
         }
+        Colours::Few(few) if few.len() == 2 && interlaced(raster) => ImageAs::Weave,
         Colours::Few(few) if few.len() <= FLAT_COLOURS => ImageAs::Artwork,
         Colours::Few(_) => ImageAs::Picture,
     }
+}
+
+/// Pixels that are looked at to tell a weave from artwork.
+const LOOKED_AT: u64 = 1 << 16;
+/// The longest float that is taken for a weave's.
+const LONGEST_FLOAT: u32 = 24;
+/// The share of pixels that may lie in solid places, or float longer, in a weave.
+const MOST_SOLID: f64 = 0.2;
+
+/// Whether two colours change from crossing to crossing, as in a weave: threads are bound
+/// both ways before long, and few places are of one colour all round.
+///
+/// Places are solid where the 5 × 5 pixels about them are alike, the image taken for a
+/// repeat. A satin of 16 has few such places, a square of 8 has a quarter.
+fn interlaced(raster: &Raster) -> bool {
+    let (width, height) = (raster.width(), raster.height());
+    let count = u64::from(width) * u64::from(height);
+    // An odd step meets all columns in turn.
+    let step = count.div_ceil(LOOKED_AT) | 1;
+    let at = |x: u32, y: u32| raster.colour(x % width, y % height);
+    let (mut looked_at, mut solid) = (0u64, 0u64);
+    for place in (0..count).step_by(step as usize) {
+        let (x, y) = (
+            (place % u64::from(width)) as u32,
+            (place / u64::from(width)) as u32,
+        );
+        let own = at(x, y);
+        let alike = |dx: u32, dy: u32| at(x + width + dx - 2, y + height + dy - 2) == own;
+        let float = |size: u32, like: &dyn Fn(u32) -> bool| {
+            let most = LONGEST_FLOAT.min(size);
+            let ahead = (1..most).take_while(|&far| like(far)).count() as u32;
+            let back = (1..most).take_while(|&far| like(size - far)).count() as u32;
+            1 + ahead + back
+        };
+        let along = float(width, &|far| at(x + far, y) == own);
+        let across = float(height, &|far| at(x, y + far) == own);
+        // A thread that never changes sides is not bound at all.
+        let loose = |float: u32, size: u32| size > 1 && float > LONGEST_FLOAT.min(size);
+        let places = || (0..25).all(|k| alike(k % 5, k / 5));
+        looked_at += 1;
+        solid += u64::from(loose(along, width) || loose(across, height) || places());
+    }
+    solid as f64 <= MOST_SOLID * looked_at as f64
 }
 
 /// Whether a colour is near black or near white.
@@ -175,12 +219,28 @@ fn weave(
         line += ", mirrored (Z becomes S)";
     }
     let strays = strays(&raster, colours);
-    if strays > 0 {
+    if let Some(darker) = darker.filter(|_| strays > 0) {
+        line += &format!(
+            "; the darker of its two colours, {darker}, is {}",
+            match reading.black {
+                Black::Warp => "warp up",
+                Black::Weft => "weft up",
+            }
+        );
+    } else if strays > 0 {
         let all = f64::from(raster.width()) * f64::from(raster.height());
         line += &format!(
             "; {} of pixels are neither black nor white",
             percent(strays as f64 / all)
         );
+    }
+    if let Colours::Few(few) = colours
+        && let [(only, _)] = few.as_slice()
+    {
+        line += match black(*only) {
+            true => "; there is only ink, no paper",
+            false => "; there is no ink, only paper",
+        };
     }
     if let Colours::Few(few) = colours
         && let [(a, _), (b, _)] = few.as_slice()
@@ -407,15 +467,44 @@ mod tests {
 
     #[test]
     fn colours_propose_what_an_image_is() {
-        let few = |list: &[Srgb]| Colours::Few(list.iter().map(|&colour| (colour, 1)).collect());
         let (black, white) = (Srgb(0, 0, 0), Srgb(255, 255, 255));
-        assert_eq!(propose(&few(&[black, white]), false), ImageAs::Weave);
-        assert_eq!(propose(&few(&[black]), false), ImageAs::Weave);
-        assert_eq!(propose(&few(&[black, white]), true), ImageAs::Picture);
-        assert_eq!(
-            propose(&few(&[Srgb(200, 0, 0), white]), false),
-            ImageAs::Artwork
-        );
-        assert_eq!(propose(&Colours::Many, false), ImageAs::Picture);
+        let (red, navy) = (Srgb(200, 0, 0), Srgb(25, 25, 117));
+        type Lies = fn(u32, u32) -> bool;
+        let plain: Lies = |x, y| (x + y) % 2 == 0;
+        let twill: Lies = |x, y| (x + 4 - y % 4) % 4 == 0;
+        let satin: Lies = |x, y| (3 * x + y) % 8 == 0;
+        let satin_16: Lies = |x, y| (7 * x + y) % 16 == 0;
+        let basket: Lies = |x, y| (x / 4 + y / 4) % 2 == 0;
+        let squares: Lies = |x, y| (x / 8 + y / 8) % 2 == 0;
+        let disc: Lies = |x, y| x.abs_diff(24).pow(2) + y.abs_diff(24).pow(2) < 200;
+        let stripes: Lies = |_, y| y % 2 == 0;
+        let image = |size: u32, dark: Srgb, light: Srgb, lies: Lies| {
+            let places = (0..size * size).map(|k| u8::from(!lies(k % size, k / size)));
+            let pixels = Pixels::Indices(places.collect());
+            let raster = Raster::new(size, size, pixels, vec![dark, light]).unwrap();
+            let colours = raster.colours();
+            propose(&raster, &colours, false)
+        };
+        for (size, lies) in [
+            (8, plain),
+            (4, twill),
+            (16, twill),
+            (8, satin),
+            (48, satin),
+            (32, satin_16),
+            (16, basket),
+        ] {
+            assert_eq!(image(size, red, white, lies), ImageAs::Weave, "{size}");
+            assert_eq!(image(size, navy, red, lies), ImageAs::Weave, "{size}");
+        }
+        for (size, lies) in [(48, squares), (48, disc), (16, stripes)] {
+            assert_eq!(image(size, red, white, lies), ImageAs::Artwork, "{size}");
+            // Black and white are a weave in any shape.
+            assert_eq!(image(size, black, white, lies), ImageAs::Weave, "{size}");
+        }
+        let one = Raster::new(1, 1, Pixels::Colours(vec![[0; 3]]), Vec::new()).unwrap();
+        assert_eq!(propose(&one, &one.colours(), false), ImageAs::Weave);
+        assert_eq!(propose(&one, &one.colours(), true), ImageAs::Picture);
+        assert_eq!(propose(&one, &Colours::Many, false), ImageAs::Picture);
     }
 }

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `raster` | pixels, palette, counting colours |
 //! | `png`, `bmp`, `tiff`, `gif`, `pcx`, `photo` | one reader each |
+//! | `tags` | what a file says beside its pixels; the tables of fields |
 //! | `encode` | one writer for each format that looms take |
 //! | `reading` | what an image is and how it is read; presets by maker |
 //! | `import` | raster → design; `numbers` are its colours as regions or yarns |
@@ -16,8 +17,10 @@
 //!
 //! * **Colour, not bits.** What is black is decided by what is displayed, whatever the
 //!   file's polarity, palette order or bit order. Two colours: the darker one is black;
-//!   more: luma below one half. Transparent pixels are white paper.
-//! * **Orientation.** The image is the face of the cloth, its top row the last pick. A
+//!   more: luma below one half. Transparent pixels, those of a colour key too, are white
+//!   paper; colours shine through in linear light. Colours are taken as sRGB.
+//! * **Orientation.** The image is the face of the cloth as every viewer shows it, with
+//!   its orientation followed, its top row the last pick. A
 //!   file that starts to count in another corner says so by [`Corner`]; see there.
 //! * **Size** is checked against [`crate::design::MAX_CROSSINGS`] and against what the
 //!   file's bytes can hold at the format's best compression, before memory is asked for.
@@ -35,6 +38,7 @@ mod photo;
 mod png;
 mod raster;
 mod reading;
+mod tags;
 mod tiff;
 mod yarn_maps;
 
@@ -44,6 +48,7 @@ pub use export::{Export, ImageContent, export};
 pub use import::design;
 pub use raster::{Colours, MAX_COLOURS, Pixels, Raster, RasterError, luma};
 pub use reading::{Black, Convention, Corner, ImageAs, ImageReading, Key};
+pub use tags::TABLES;
 pub use yarn_maps::{Maps, with_maps};
 
 use crate::design::check_size;
@@ -182,19 +187,59 @@ pub struct Decoded {
 /// # Errors
 /// [`ImageError`]: one line with the file, what is wrong and what to do.
 pub fn read(bytes: &[u8], name: &str) -> Result<Decoded, ImageError> {
+    read_kind(bytes, name, false)
+}
+
+/// As [`read`], with the kinds of TIFF that only pictures come in: JPEG compression,
+/// fractions, floating point.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_picture(bytes: &[u8], name: &str) -> Result<Decoded, ImageError> {
+    let mut decoded = read_kind(bytes, name, true)?;
+    if let Some((across, down)) = decoded.raster.per_cm
+        && !(0.99..=1.01).contains(&(across / down))
+    {
+        decoded.warnings.push(format!(
+            "its pixels are not square (resolution {across:.4} × {down:.4} per cm): the picture is \
+             taken as if they were"
+        ));
+    }
+    Ok(decoded)
+}
+
+fn read_kind(bytes: &[u8], name: &str, picture: bool) -> Result<Decoded, ImageError> {
     let Some(encoding) = Encoding::of(bytes) else {
         return Err(Fault::new("expected an image, found something else", SAVE_PLAIN).named(name));
     };
+    let tags = tags::Tags::of(bytes, encoding);
     let mut warnings = Vec::new();
     let read = match encoding {
         Encoding::Png => png::read(bytes, &mut warnings),
         Encoding::Bmp => bmp::read(bytes, &mut warnings),
-        Encoding::Tiff => tiff::read(bytes, &mut warnings),
+        Encoding::Tiff => match tiff::read(bytes, &mut warnings) {
+            Err(fault) if picture && fault.remedy == SAVE_PLAIN => {
+                photo::tiff(bytes, &mut warnings)
+            }
+            read => read,
+        },
         Encoding::Gif => gif::read(bytes, &mut warnings),
         Encoding::Pcx => pcx::read(bytes, &mut warnings),
         Encoding::Jpeg | Encoding::WebP => photo::read(bytes, encoding, &mut warnings),
     };
-    match read {
+    let turned = read.and_then(|mut raster| {
+        raster.per_cm = raster.per_cm.or(tags.per_cm);
+        Ok(tags.turn.apply(raster)?)
+    });
+    warnings.extend(tags.warnings);
+    if tags.inks {
+        warnings.push(
+            "its four inks (CMYK) are turned into colours without their profile: convert it to \
+             sRGB for true colours"
+                .to_owned(),
+        );
+    }
+    match turned {
         Ok(raster) => Ok(Decoded {
             raster,
             encoding,
@@ -253,7 +298,15 @@ fn check_coloured((width, height): (u32, u32)) -> Result<(), Fault> {
             "save it with a palette, or cut it into parts",
         ));
     }
-    Ok(())
+    ask_memory((width, height), 3)
+}
+
+/// Asks for a picture's memory before it is taken.
+fn ask_memory((width, height): (u32, u32), bytes_a_pixel: u64) -> Result<(), Fault> {
+    let pixels = u64::from(width) * u64::from(height);
+    let what = || format!("a picture of {width} × {height} pixels");
+    crate::memory::ask(pixels.saturating_mul(bytes_a_pixel), what)
+        .map_err(|error| Fault::new(error.to_string(), "scale it down"))
 }
 
 /// Remembers one warning once.

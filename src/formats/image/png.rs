@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use png::{BitDepth, ColorType, Decoder, Limits, Transformations, Unit};
+use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
 use super::raster::{fill_palette, over_white, unpack};
 use super::{Fault, Pixels, Raster, TRANSPARENT, check_coloured, check_declared, remark};
@@ -32,10 +32,6 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
     }
     let mut reader = decoder.read_info().map_err(Fault::damaged)?;
     let info = reader.info();
-    let per_cm = info.pixel_dims.and_then(|dims| match dims.unit {
-        Unit::Meter => Some((dims.xppu as f32 / 100.0, dims.yppu as f32 / 100.0)),
-        Unit::Unspecified => None,
-    });
     let mut rows = Rows::new(
         width,
         height,
@@ -62,9 +58,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
             }
         }
     }
-    let mut raster = rows.finish(warnings)?;
-    raster.per_cm = per_cm;
-    Ok(raster)
+    rows.finish(warnings)
 }
 
 /// Gathers the rows of an image in the form that holds them best.
@@ -76,6 +70,8 @@ struct Rows {
     palette: Vec<Srgb>,
     /// The colour that is transparent, of greys and true colours, as samples.
     clear: Option<Vec<u16>>,
+    /// The indices that are transparent, of palettes and small greys.
+    clear_indices: Vec<usize>,
     pixels: Pixels,
     transparent: bool,
 }
@@ -96,7 +92,15 @@ impl Rows {
             depth,
             BitDepth::One | BitDepth::Two | BitDepth::Four | BitDepth::Eight
         );
-        let (pixels, palette, clear, transparent) = match kind {
+        // One number a sample; the decoder gives those of up to 8 bits as bytes.
+        let key: Option<Vec<u16>> = clear.map(|bytes| match depth {
+            BitDepth::Sixteen => {
+                let samples = bytes.as_chunks::<2>().0.iter();
+                samples.map(|&bytes| u16::from_be_bytes(bytes)).collect()
+            }
+            _ => bytes.iter().map(|&byte| u16::from(byte)).collect(),
+        });
+        let (pixels, palette, clear, clear_indices) = match kind {
             ColorType::Indexed => {
                 let alphas = clear.unwrap_or_default();
                 let colours = palette.unwrap_or_default().as_chunks::<3>().0.iter();
@@ -108,13 +112,18 @@ impl Rows {
                         Srgb(red, green, blue)
                     })
                     .collect();
-                let seen = alphas.iter().any(|&alpha| alpha < 255);
-                (indexed(one_bit, across, count), palette, None, seen)
+                let seen = alphas.iter().enumerate();
+                let seen = seen.filter(|alpha| *alpha.1 < 255).map(|alpha| alpha.0);
+                (
+                    indexed(one_bit, across, count),
+                    palette,
+                    None,
+                    seen.collect(),
+                )
             }
             ColorType::Grayscale if small => {
                 let most = (1u16 << depth as u8) - 1;
-                let clear = clear.and_then(|bytes| bytes.first_chunk::<2>());
-                let clear = clear.map(|&bytes| u16::from_be_bytes(bytes));
+                let clear = key.as_ref().and_then(|key| key.first().copied());
                 let palette = (0..=most)
                     .map(|grey| match clear {
                         Some(clear) if clear == grey => Srgb(255, 255, 255),
@@ -128,16 +137,10 @@ impl Rows {
                     indexed(one_bit, across, count),
                     palette,
                     None,
-                    clear.is_some(),
+                    clear.map(usize::from).into_iter().collect(),
                 )
             }
-            _ => {
-                let clear = clear.map(|bytes| {
-                    let samples = bytes.as_chunks::<2>().0.iter();
-                    samples.map(|&bytes| u16::from_be_bytes(bytes)).collect()
-                });
-                (Pixels::Colours(Vec::new()), Vec::new(), clear, false)
-            }
+            _ => (Pixels::Colours(Vec::new()), Vec::new(), key, Vec::new()),
         };
         Self {
             width: across,
@@ -146,11 +149,12 @@ impl Rows {
             depth,
             palette,
             clear,
+            clear_indices,
             pixels: match pixels {
                 Pixels::Colours(_) => Pixels::Colours(Vec::with_capacity(count)),
                 other => other,
             },
-            transparent,
+            transparent: false,
         }
     }
 
@@ -196,26 +200,21 @@ impl Rows {
                     });
                     let alpha = if clear { 0 } else { alpha };
                     self.transparent |= alpha < 255;
-                    colours.push(match alpha {
-                        255 => colour,
-                        _ => over_white(colour, alpha),
-                    });
+                    colours.push(over_white(colour, alpha));
                 }
             }
         }
     }
 
     fn finish(mut self, warnings: &mut Vec<String>) -> Result<Raster, Fault> {
-        if self.transparent {
+        fill_palette(&mut self.palette, &self.pixels, warnings);
+        let raster = Raster::new(self.width as u32, self.height, self.pixels, self.palette)?;
+        let counts = raster.index_counts().unwrap_or_default();
+        let met = |index: &usize| counts.get(*index).is_some_and(|&count| count > 0);
+        if self.transparent || self.clear_indices.iter().any(met) {
             remark(warnings, TRANSPARENT);
         }
-        fill_palette(&mut self.palette, &self.pixels, warnings);
-        Ok(Raster::new(
-            self.width as u32,
-            self.height,
-            self.pixels,
-            self.palette,
-        )?)
+        Ok(raster)
     }
 }
 

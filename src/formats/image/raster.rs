@@ -1,5 +1,7 @@
 //! The pixels of an image file: indices and their palette, or true colours.
 
+use glam::Vec3;
+
 use crate::design::Srgb;
 
 /// The most colours an indexed image can tell apart.
@@ -89,6 +91,14 @@ impl Raster {
             palette,
             per_cm: None,
         })
+    }
+
+    /// The true colours; none of an image with a palette.
+    pub fn into_colours(self) -> Vec<[u8; 3]> {
+        match self.pixels {
+            Pixels::Colours(colours) => colours,
+            _ => Vec::new(),
+        }
     }
 
     /// Pixels across.
@@ -211,11 +221,19 @@ pub fn luma(Srgb(red, green, blue): Srgb) -> f32 {
     0.299 * f32::from(red) + 0.587 * f32::from(green) + 0.114 * f32::from(blue)
 }
 
-/// A colour seen over white paper; `alpha` in 0..=255.
-pub(super) fn over_white([red, green, blue]: [u8; 3], alpha: u8) -> [u8; 3] {
-    let alpha = u32::from(alpha);
-    let over = |value: u8| ((u32::from(value) * alpha + 255 * (255 - alpha) + 127) / 255) as u8;
-    [over(red), over(green), over(blue)]
+/// A colour seen over white paper, in linear light; `alpha` in 0..=255.
+pub(super) fn over_white(colour: [u8; 3], alpha: u8) -> [u8; 3] {
+    match alpha {
+        255 => colour,
+        0 => [255; 3],
+        _ => {
+            let [red, green, blue] = colour;
+            let own = Srgb(red, green, blue).to_linear();
+            let Srgb(red, green, blue) =
+                Srgb::from_linear(Vec3::ONE.lerp(own, f32::from(alpha) / 255.0));
+            [red, green, blue]
+        }
+    }
 }
 
 /// Appends the indices of a row packed at `depth` bits (1, 2, 4), the highest bits first.

@@ -9,7 +9,6 @@
 use std::borrow::Cow;
 use std::io::Cursor;
 
-use tiff::decoder::ifd::Value;
 use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::{CompressionMethod, Tag};
 
@@ -29,6 +28,29 @@ const RGB: u16 = 2;
 const PALETTE: u16 = 3;
 const CMYK: u16 = 5;
 
+/// What the sample behind the colours is (ExtraSamples).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Alpha {
+    /// The colours are multiplied by it.
+    Associated,
+    /// The colours are as they are.
+    Straight,
+}
+
+impl Alpha {
+    /// The colour that was stored, seen over white paper.
+    fn seen(self, stored: [u8; 3], alpha: u8) -> [u8; 3] {
+        let own = match (self, alpha) {
+            (Self::Associated, 1..) => stored.map(|value| {
+                let whole = (u32::from(value) * 255 + u32::from(alpha) / 2) / u32::from(alpha);
+                whole.min(255) as u8
+            }),
+            _ => stored,
+        };
+        over_white(own, alpha)
+    }
+}
+
 /// The fields that say how pixels are stored.
 struct Fields {
     width: u32,
@@ -37,15 +59,14 @@ struct Fields {
     samples: u16,
     photometric: u16,
     planar: bool,
-    alpha: bool,
+    alpha: Option<Alpha>,
     reversed: bool,
     rows_per_strip: u64,
-    per_cm: Option<(f32, f32)>,
 }
 
 pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, Fault> {
     let mut decoder = open(Cow::Borrowed(bytes))?;
-    let fields = Fields::read(&mut decoder, bytes.len(), warnings)?;
+    let fields = Fields::read(&mut decoder, bytes.len())?;
     let palette = fields.palette(&mut decoder)?;
     if decoder.more_images() {
         remark(warnings, "only the first page of the TIFF is read");
@@ -85,9 +106,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<String>) -> Result<Raster, F
         let read = decoder.read_chunk(chunk).map_err(Fault::damaged)?;
         canvas.put(&read, place, size, chunk / per_plane)?;
     }
-    let mut raster = canvas.finish(palette, warnings)?;
-    raster.per_cm = fields.per_cm;
-    Ok(raster)
+    canvas.finish(palette, warnings)
 }
 
 fn open(bytes: Cow<'_, [u8]>) -> Result<Open<'_>, Fault> {
@@ -100,11 +119,7 @@ fn open(bytes: Cow<'_, [u8]>) -> Result<Open<'_>, Fault> {
 }
 
 impl Fields {
-    fn read(
-        decoder: &mut Open<'_>,
-        bytes: usize,
-        warnings: &mut Vec<String>,
-    ) -> Result<Self, Fault> {
+    fn read(decoder: &mut Open<'_>, bytes: usize) -> Result<Self, Fault> {
         let mut number = |tag: Tag, usual: u64| -> Result<u64, Fault> {
             let found = decoder.find_tag_unsigned_vec::<u64>(tag);
             let found = found.map_err(Fault::damaged)?;
@@ -118,13 +133,15 @@ impl Fields {
         let (width, height) = (number(Tag::ImageWidth, 0)?, number(Tag::ImageLength, 0)?);
         let photometric = number(Tag::PhotometricInterpretation, 1)?;
         let rows_per_strip = number(Tag::RowsPerStrip, u64::from(u32::MAX))?;
-        let alpha = matches!(number(Tag::ExtraSamples, 0)?, 1 | 2);
+        let alpha = match number(Tag::ExtraSamples, 0)? {
+            1 => Some(Alpha::Associated),
+            2 => Some(Alpha::Straight),
+            _ => None,
+        };
         let planar = number(Tag::PlanarConfiguration, 1)? == 2 && samples > 1;
         let reversed = number(Tag::FillOrder, 1)? == 2;
         let sample_format = number(Tag::SampleFormat, 1)?;
-        let orientation = number(Tag::Orientation, 1)?;
         let tile = number(Tag::TileWidth, 1)?.saturating_mul(number(Tag::TileLength, 1)?);
-        let unit = number(Tag::ResolutionUnit, 2)?;
         let refuse = |what: String| Err(Fault::new(what, SAVE_PLAIN));
         // Output bits a byte of each compression can stand for at best.
         let expands = match CompressionMethod::from_u16_exhaustive(compression as u16) {
@@ -161,20 +178,6 @@ impl Fields {
         if tile > 1 << 28 {
             return Err(Fault::damaged("tiles larger than any image"));
         }
-        if orientation != 1 {
-            remark(
-                warnings,
-                "the TIFF asks to be shown turned or mirrored: it is read as it is stored",
-            );
-        }
-        let per_cm = match unit {
-            2 => Some(1.0 / 2.54),
-            3 => Some(1.0),
-            _ => None,
-        };
-        let across = resolution(decoder, Tag::XResolution);
-        let down = resolution(decoder, Tag::YResolution);
-        let per_cm = per_cm.and_then(|scale| Some((across? * scale, down? * scale)));
         Ok(Self {
             width,
             height,
@@ -185,7 +188,6 @@ impl Fields {
             alpha,
             reversed,
             rows_per_strip,
-            per_cm,
         })
     }
 
@@ -270,13 +272,6 @@ impl Fields {
             }
         }
         Ok(patched)
-    }
-}
-
-fn resolution(decoder: &mut Open<'_>, tag: Tag) -> Option<f32> {
-    match decoder.find_tag(tag).ok()?? {
-        Value::Rational(above, below) if below > 0 => Some(above as f32 / below as f32),
-        _ => None,
     }
 }
 
@@ -425,7 +420,7 @@ impl<'f> Canvas<'f> {
                 Pixels::Colours(colours) => {
                     let target = &mut colours[from..from + across];
                     if self.fields.planar {
-                        self.fields.add_plane(target, &line, plane as usize);
+                        self.transparent |= self.fields.add_plane(target, &line, plane as usize);
                     } else {
                         self.transparent |= self.fields.add_pixels(target, &line, samples);
                     }
@@ -496,21 +491,35 @@ impl Fields {
                 WHITE_IS_ZERO => ([255 - sample(0); 3], 1),
                 _ => ([sample(0); 3], 1),
             };
-            let alpha = match self.alpha && samples > colours {
-                true => sample(colours),
-                false => 255,
-            };
-            transparent |= alpha < 255;
-            *colour = match alpha {
-                255 => found,
-                _ => over_white(found, alpha),
+            *colour = match self.alpha.filter(|_| samples > colours) {
+                Some(kind) => {
+                    let alpha = sample(colours);
+                    transparent |= alpha < 255;
+                    kind.seen(found, alpha)
+                }
+                None => found,
             };
         }
         transparent
     }
 
-    /// One plane of separate planes; those beyond the colours are left out.
-    fn add_plane(&self, target: &mut [[u8; 3]], line: &Line<'_>, plane: usize) {
+    /// One plane of separate planes, whether it made any transparent; those beyond the
+    /// colours and alpha are left out.
+    fn add_plane(&self, target: &mut [[u8; 3]], line: &Line<'_>, plane: usize) -> bool {
+        let colours = match self.photometric {
+            RGB => 3,
+            CMYK => 4,
+            _ => 1,
+        };
+        if let Some(kind) = self.alpha.filter(|_| plane == colours) {
+            let mut transparent = false;
+            for (x, colour) in target.iter_mut().enumerate() {
+                let alpha = line.at(x);
+                transparent |= alpha < 255;
+                *colour = kind.seen(*colour, alpha);
+            }
+            return transparent;
+        }
         for (x, colour) in target.iter_mut().enumerate() {
             let value = line.at(x);
             match (self.photometric, plane) {
@@ -526,5 +535,6 @@ impl Fields {
                 _ => {}
             }
         }
+        false
     }
 }

@@ -35,6 +35,7 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         dials: vec![("level".to_owned(), args.level.to_string())],
         ..StillRequest::default()
     };
+    note_warnings(&still::light_warnings(&request)?);
     let progress = Progress::new();
     let job = progress.job();
     Interrupt::watch(&job);

@@ -14,7 +14,6 @@ use super::{dialog, typing};
 use crate::tokens::{self, Palette};
 use crate::values;
 use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
-use pickglass::text::visible;
 
 /// What became of an export.
 pub enum Exported {

@@ -6,7 +6,6 @@ use pickglass::design::{
     Design, Lattice, Lifting, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed, WeavePattern, library, weave,
 };
 use pickglass::edit::Edit;
-use pickglass::text::visible;
 
 use super::{dialog, draft, typing};
 use crate::tokens::{self, Palette};

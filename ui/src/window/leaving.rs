@@ -70,6 +70,9 @@ impl App {
                 let text = format!("Wrote {}", path.display());
                 let kept = format!("{} × {}, {} spp", report.width, report.height, report.spp);
                 self.say(Grade::Done, text, kept);
+                for warning in report.warnings {
+                    self.warn(warning, "The picture was written.");
+                }
                 self.toasts.made(&path);
             }
             Some(Exported::Cancelled) => {

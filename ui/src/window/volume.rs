@@ -13,7 +13,6 @@ use pickglass::formats::volume::{self, Attachment, VolumeFileError, bytes_in_wor
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
 use pickglass::still::{self, PreparedCloth, StillRequest};
-use pickglass::text::visible;
 use pickglass::volume::source::VoxelSource;
 use pickglass::yarn::tubes::YarnTube;
 

@@ -152,7 +152,7 @@ impl Posterise {
                 if let Some(field) = self.field.take() {
                     ctx.memory_mut(|memory| memory.surrender_focus(field));
                 }
-                self.problem = photo.warnings.first().cloned();
+                self.problem = (!photo.warnings.is_empty()).then(|| photo.warnings.join("\n"));
                 self.take(ctx, Arc::new(photo.source), false);
             }
             Outcome::Ready(Err(problem)) => {
