@@ -54,6 +54,7 @@ struct ReliefKey {
 struct TableKey {
     relief: ReliefKey,
     light: LightChoice,
+    turned: bool,
 }
 
 impl SightTables {
@@ -68,7 +69,10 @@ impl SightTables {
             keep(&self.reliefs, &key.relief, &relief);
             relief
         });
-        let table = Arc::new(FaceTable::new(&relief, &lights(&key.light, view)?));
+        let table = Arc::new(FaceTable::new(
+            &relief,
+            &lights(&key.light, view, key.turned)?,
+        ));
         keep(&self.kept, key, &table);
         Ok(table)
     }
@@ -213,6 +217,7 @@ impl FirstSight {
                         back: request.view.turns_over(),
                     },
                     light: request.light.clone(),
+                    turned: request.turned,
                 };
                 self.tables.get(&key, request.view)
             })

@@ -37,7 +37,7 @@ pub fn render_grid(
     effects.retain(|(name, _)| ["shadows", "multiple", "sky", "tap"].contains(&name.as_str()));
     let shot = Shot {
         camera: camera_over(crate::render::Medium::bounds(&file.grid), request)?,
-        lights: lights(&request.light, request.view)?,
+        lights: lights(&request.light, request.view, request.turned)?,
         settings,
         request,
     };
@@ -69,7 +69,7 @@ pub fn scene_files(
     settings.background = Background::Sky;
     let scene = mitsuba::Scene {
         camera: &camera_over(frame.bounds(), request)?,
-        lights: &lights(&request.light, request.view)?,
+        lights: &lights(&request.light, request.view, request.turned)?,
         settings: &settings,
     };
     Ok(mitsuba::scene(path, frame, &scene)?)

@@ -167,6 +167,8 @@ struct TypedPath {
 /// What is to be written: the design as it was when it was asked for.
 pub struct Writing {
     pub design: Arc<Design>,
+    /// Draft and cloth are shown turned by 180°; so are they printed.
+    pub turned: bool,
     /// The id of the state, see `Document::state_id`.
     pub state: u64,
 }
@@ -365,9 +367,13 @@ impl Files {
     ) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_owned();
         let work = move || {
-            let Writing { design, state } = what;
+            let Writing {
+                design,
+                turned,
+                state,
+            } = what;
             let done = match purpose {
-                Purpose::Print => print(&design, &path).map(|()| Vec::new()),
+                Purpose::Print => print(&design, turned, &path).map(|()| Vec::new()),
                 _ => formats::save(&design, &path, &options).map_err(|error| error.to_string()),
             };
             match done {
@@ -548,8 +554,12 @@ fn is_image(path: &Path) -> bool {
 }
 
 /// Writes a design as pages.
-fn print(design: &Design, path: &Path) -> Result<(), String> {
-    let pages = pdf::write(design, &design.weave(), &PdfOptions::default());
+fn print(design: &Design, turned: bool, path: &Path) -> Result<(), String> {
+    let options = PdfOptions {
+        turned,
+        ..PdfOptions::default()
+    };
+    let pages = pdf::write(design, &design.weave(), &options);
     let bytes = pages.map_err(|error| error.to_string())?;
     atomic::write(path, &bytes).map_err(|error| error.to_string())
 }

@@ -8,6 +8,7 @@ use pickglass::edit::{Document, Edit};
 use super::swatches;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::draft::picture_uv;
 use crate::window::focus;
 
 /// Side of a thumbnail, in pixels and points.
@@ -31,7 +32,13 @@ struct Thumbs {
 
 impl Colourways {
     /// Shows the list.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+    pub fn show(
+        &mut self,
+        ui: &mut egui::Ui,
+        document: &Document,
+        turned: bool,
+        actions: &mut Vec<Action>,
+    ) {
         let design = document.design();
         self.draw_thumbs(ui.ctx(), document);
         let add = ui.button("Duplicate the yarns in use");
@@ -57,7 +64,7 @@ impl Colourways {
                 for (place, (at, name, yarns)) in all.into_iter().enumerate() {
                     ui.vertical(|ui| {
                         ui.set_width(2.0 * THUMB as f32);
-                        self.one_ui(ui, place, at, name, yarns, actions);
+                        self.one_ui(ui, (place, turned), at, name, yarns, actions);
                     });
                 }
             });
@@ -67,7 +74,7 @@ impl Colourways {
     fn one_ui(
         &mut self,
         ui: &mut egui::Ui,
-        place: usize,
+        (place, turned): (usize, bool),
         at: Option<usize>,
         name: &str,
         yarns: &[Yarn],
@@ -85,9 +92,9 @@ impl Colourways {
             .as_ref()
             .and_then(|thumbs| thumbs.textures.get(place))
         {
-            let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+            let uv = picture_uv(turned);
             ui.painter()
-                .image(texture.id(), rect, whole, egui::Color32::WHITE);
+                .image(texture.id(), rect, uv, egui::Color32::WHITE);
         }
         let colour = if response.hovered() || at.is_none() {
             tokens::ACCENT

@@ -13,6 +13,7 @@ mod painting;
 mod pictures;
 mod states;
 mod times;
+mod turned;
 mod viewing;
 
 pub use pictures::renderer;

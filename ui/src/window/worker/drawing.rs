@@ -115,7 +115,8 @@ impl Drawing<'_> {
                 }
             } else {
                 // The eye moved: the picture that is shown lies over what is new.
-                under = known.aim == request.aim && known.same_cloth(request);
+                let turned = known.still.turned != request.still.turned;
+                under = known.aim == request.aim && known.same_cloth(request) && !turned;
             }
         }
         let shown = traced.as_ref().unwrap_or(&sight.rgba);
