@@ -161,7 +161,7 @@ impl Lamp {
 fn lamps(rig: &LightRig, back: bool) -> Vec<Lamp> {
     use std::f32::consts::PI;
     let side = if back { -1.0 } else { 1.0 };
-    let turn = if rig.is_turned_over() { -1.0 } else { 1.0 };
+    let turn = rig.sky_turn();
     let seen = |towards: Vec3| Vec3::new(towards.x, towards.y, side * towards.z);
     let mut lamps: Vec<Lamp> = (rig.suns.iter())
         .map(|sun| Lamp::new(seen(sun.towards), sun.irradiance / PI))
@@ -169,13 +169,12 @@ fn lamps(rig: &LightRig, back: bool) -> Vec<Lamp> {
     match &rig.sky {
         Sky::Dark => {}
         Sky::Dome(dome) => lamps.extend(hemisphere().map(|towards| {
-            let from = Vec3::new(turn * towards.x, towards.y, turn * side * towards.z);
+            let from = turn * seen(towards);
             Lamp::new(towards, dome.radiance(from) * 2.0 / SKY_SAMPLES as f32)
         })),
         Sky::Image(image) => lamps.extend((0..SKY_SAMPLES).filter_map(|k| {
             let sample = image.sample([place(k, 0.754_877_7), place(k, 0.569_840_3)])?;
-            let from = sample.direction;
-            let towards = seen(Vec3::new(turn * from.x, from.y, turn * from.z));
+            let towards = seen(turn * sample.direction);
             let share = PI * SKY_SAMPLES as f32 * sample.density;
             Some(Lamp::new(towards, sample.radiance / share))
         })),

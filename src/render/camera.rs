@@ -186,6 +186,20 @@ impl Camera {
         }
     }
 
+    /// The camera that sees the cloth turned by 180° as it lies, about the middle of the
+    /// picture: what lay below is above, and no Z becomes an S. Straight on the cloth that is
+    /// the picture turned by 180°.
+    pub fn turned(self) -> Self {
+        let turn = Vec3::new(-1.0, -1.0, 1.0);
+        Self {
+            eye: self.target + (self.eye - self.target) * turn,
+            right: self.right * turn,
+            up: self.up * turn,
+            forward: self.forward * turn,
+            ..self
+        }
+    }
+
     /// The ray through a point of the film, in pixels from its upper left corner.
     #[inline]
     pub fn ray(&self, x: f32, y: f32) -> Ray {

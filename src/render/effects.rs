@@ -3,8 +3,6 @@
 //! [`with_path`] looks at the settings and hands a [`Path`] of the fitting type to the
 //! work that follows paths, so that nothing that is off is asked about along the way.
 
-use glam::Vec3;
-
 use super::environment::{Dark, Environment};
 use super::light::{LightRig, Sky};
 use super::path::{Path, Plane};
@@ -108,11 +106,7 @@ impl Choice<'_> {
             scatterer,
             suns: &self.lights.suns,
             environment,
-            turn: if self.lights.is_turned_over() {
-                Vec3::new(-1.0, 1.0, -1.0)
-            } else {
-                Vec3::ONE
-            },
+            turn: self.lights.sky_turn(),
             plane: Plane {
                 z,
                 facing,

@@ -3,7 +3,7 @@
 //! Every rig is scaled so that a white diffuser that faces up has radiance 1, that is,
 //! receives an irradiance of π. White is D65 = (1, 1, 1) in linear sRGB.
 
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -61,6 +61,8 @@ pub struct LightRig {
     pub warnings: Vec<String>,
     /// Whether x and z are negated between the sky and the cloth.
     turned_over: bool,
+    /// Whether x and y are.
+    turned: bool,
 }
 
 /// Why a rig could not be made.
@@ -148,6 +150,10 @@ fn preset_text(name: &str) -> Option<&'static str> {
     })
 }
 
+/// Half a turn about the y axis, and about the z axis.
+const OVER: Vec3 = Vec3::new(-1.0, 1.0, -1.0);
+const ROUND: Vec3 = Vec3::new(-1.0, -1.0, 1.0);
+
 impl LightRig {
     /// A built-in rig by name, see [`PRESET_NAMES`].
     pub fn preset(name: &str) -> Result<Self, LightError> {
@@ -228,6 +234,7 @@ impl LightRig {
             sky,
             warnings: Vec::new(),
             turned_over: false,
+            turned: false,
         })
     }
 
@@ -250,6 +257,7 @@ impl LightRig {
             sky: Sky::Image(Arc::new(image)),
             warnings,
             turned_over: false,
+            turned: false,
         })
     }
 
@@ -261,6 +269,7 @@ impl LightRig {
             sky,
             warnings: Vec::new(),
             turned_over: false,
+            turned: false,
         }
     }
 
@@ -268,17 +277,30 @@ impl LightRig {
     /// warp, the way one turns a page), the light stays with the viewer. In cloth space
     /// the light turns instead: x and z change sign.
     pub fn turned_over(&self) -> Self {
-        let turn = Mat3::from_diagonal(Vec3::new(-1.0, 1.0, -1.0));
         let mut rig = self.clone();
         rig.turned_over = !self.turned_over;
         for sun in &mut rig.suns {
-            sun.towards = turn * sun.towards;
+            sun.towards *= OVER;
         }
         rig
     }
 
-    /// Whether the sky has to be looked up with x and z negated.
-    pub fn is_turned_over(&self) -> bool {
-        self.turned_over
+    /// The rig for cloth that is turned by 180° as it lies, so that what was below is above:
+    /// the light stays with the viewer. In cloth space it turns instead: x and y change sign.
+    pub fn turned(&self) -> Self {
+        let mut rig = self.clone();
+        rig.turned = !self.turned;
+        for sun in &mut rig.suns {
+            sun.towards *= ROUND;
+        }
+        rig
+    }
+
+    /// What a direction in cloth space is multiplied by, axis by axis, where it is looked up
+    /// in the sky, and one of the sky where it is brought into cloth space.
+    pub fn sky_turn(&self) -> Vec3 {
+        let over = if self.turned_over { OVER } else { Vec3::ONE };
+        let round = if self.turned { ROUND } else { Vec3::ONE };
+        over * round
     }
 }

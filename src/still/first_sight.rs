@@ -58,6 +58,7 @@ struct ReliefKey {
 struct TableKey {
     relief: ReliefKey,
     light: LightChoice,
+    turned: bool,
 }
 
 impl SightTables {
@@ -72,7 +73,10 @@ impl SightTables {
             keep(&self.reliefs, &key.relief, &relief);
             relief
         });
-        let table = Arc::new(FaceTable::new(&relief, &lights(&key.light, view)?));
+        let table = Arc::new(FaceTable::new(
+            &relief,
+            &lights(&key.light, view, key.turned)?,
+        ));
         keep(&self.kept, key, &table);
         Ok(table)
     }
@@ -218,6 +222,7 @@ impl FirstSight {
                         back: request.view.turns_over(),
                     },
                     light: request.light.clone(),
+                    turned: request.turned,
                 };
                 self.tables.get(&key, request.view)
             })

@@ -48,7 +48,7 @@ pub fn render_grid(
     effects.retain(|(name, _)| ["shadows", "multiple", "sky", "tap"].contains(&name.as_str()));
     let shot = Shot {
         camera: camera_over(crate::render::Medium::bounds(&file.grid), request)?,
-        lights: lights(&request.light, request.view)?,
+        lights: lights(&request.light, request.view, request.turned)?,
         settings,
         request,
     };
@@ -86,7 +86,7 @@ pub fn scene_files(
     settings.background = Background::Sky;
     let scene = mitsuba::Scene {
         camera: &camera_over(frame.bounds(), request)?,
-        lights: &lights(&request.light, request.view)?,
+        lights: &lights(&request.light, request.view, request.turned)?,
         settings: &settings,
     };
     Ok(mitsuba::scene(path, frame, &scene)?)
@@ -97,5 +97,5 @@ pub fn scene_files(
 /// # Errors
 /// When the light is not usable.
 pub fn light_warnings(request: &StillRequest) -> Result<Vec<String>, StillError> {
-    Ok(lights(&request.light, request.view)?.warnings)
+    Ok(lights(&request.light, request.view, request.turned)?.warnings)
 }

@@ -122,7 +122,13 @@ pub(super) fn settings(
     Ok((cloth, render, on))
 }
 
-pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, StillError> {
+/// The light on a cloth that is seen in a view and, where `turned`, turned by 180°: it stays
+/// with the viewer.
+pub(super) fn lights(
+    choice: &LightChoice,
+    view: View,
+    turned: bool,
+) -> Result<LightRig, StillError> {
     let rig = match choice {
         LightChoice::Preset(name) => LightRig::preset(name)?,
         LightChoice::Sun(heading) => LightRig::sun(heading.azimuth, heading.elevation)?,
@@ -133,11 +139,12 @@ pub(super) fn lights(choice: &LightChoice, view: View) -> Result<LightRig, Still
             rig
         }
     };
-    Ok(if view.turns_over() {
+    let rig = if view.turns_over() {
         rig.turned_over()
     } else {
         rig
-    })
+    };
+    Ok(if turned { rig.turned() } else { rig })
 }
 
 pub(super) fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
@@ -199,7 +206,7 @@ pub(super) fn camera_at(
     }
     let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
     let target = Vec3::new(x, y, middle.z);
-    Ok(match request.eye {
+    let camera = match request.eye {
         None => request.view.camera(target, width_mm, width, height),
         Some(heading) => {
             let from = heading.towards();
@@ -218,6 +225,10 @@ pub(super) fn camera_at(
                 height,
             )
         }
+    };
+    Ok(match request.turned {
+        true => camera.turned(),
+        false => camera,
     })
 }
 
@@ -250,7 +261,7 @@ pub fn render(
     let (_, settings, _) = settings(request)?;
     let shot = Shot {
         camera: camera(&prepared.design, request)?,
-        lights: lights(&request.light, request.view)?,
+        lights: lights(&request.light, request.view, request.turned)?,
         settings,
         request,
     };

@@ -114,6 +114,9 @@ pub struct StillRequest {
     /// The eye's own direction instead of the view's: from there the same side is seen in
     /// perspective.
     pub eye: Option<Heading>,
+    /// The cloth is turned by 180° as it lies, end 1 at the right and pick 1 at the top: a
+    /// view straight on it is turned by 180°. The light stays where it is.
+    pub turned: bool,
     /// Width of cloth the picture shows, mm; `None` = the view's own.
     pub width_mm: Option<f32>,
     /// The point of the cloth in the picture's middle, mm; `None` = the design's middle.
@@ -144,6 +147,7 @@ impl Default for StillRequest {
             height: 960,
             view: View::Face,
             eye: None,
+            turned: false,
             width_mm: None,
             centre_mm: None,
             light: LightChoice::default(),

@@ -50,9 +50,9 @@ Range=0,255
 
 
 class Grid:
-    """Where crossings lie, found out by hovering: the status line names end and pick. Ends
-    are counted from the right there (US layout); here both count from 0, from the left and
-    from below, as in files."""
+    """Where crossings lie, found out by hovering: the status line names end and pick by their
+    numbers in files, from 1; here both count from 0. In the US layout the draft is turned by
+    180°, so that ends run to the left and picks downwards: `way` is -1 then."""
 
     def __init__(self, desk, ends):
         self.desk, self.ends = desk, ends
@@ -62,6 +62,9 @@ class Grid:
         upward = self._edge(lambda by: self._told(middle[0], middle[1] - by)[1])
         self.left, self.low = middle[0] + across, middle[1] - upward
         self.first = self._told(self.left, self.low)
+        # The next thread has the next number, or the one before.
+        on = (self.first[0] - self._told(*middle)[0]) % self.ends
+        self.way = 1 if on == 1 else -1
         self.cell = self._cell(min(self.rect[0] + self.rect[2] - self.left - 4, 200))
 
     def _edge(self, told):
@@ -75,7 +78,7 @@ class Grid:
     def _cell(self, reach):
         """The size of a crossing, from how many lie within `reach` pixels."""
         end, _ = self._told(self.left + reach, self.low)
-        count = (end - self.first[0]) % self.ends
+        count = self.way * (end - self.first[0]) % self.ends
         sizes = [size for size in range(2, LARGEST) if reach // size == count]
         if not sizes:
             raise Failed(f"{count} ends in {reach} pixels")
@@ -88,7 +91,7 @@ class Grid:
         self.desk.until("no crossing", lambda: self._status() is None)
         self.desk.move(x, y)
         end, pick = self.desk.until(f"a crossing at {x}, {y}", self._status)
-        return self.ends - end, pick - 1
+        return end - 1, pick - 1
 
     def _outside(self):
         return self.desk.size[0] // 2, self.desk.size[1] - 8
@@ -102,7 +105,8 @@ class Grid:
 
     def place(self, end, pick):
         """The middle of a crossing."""
-        columns, rows = end - self.first[0], pick - self.first[1]
+        columns = self.way * (end - self.first[0])
+        rows = self.way * (pick - self.first[1])
         return (
             self.left + (columns + 0.5) * self.cell,
             self.low - (rows + 0.5) * self.cell,

@@ -9,13 +9,20 @@ use crate::window::Pane;
 /// How a loom's parts are laid round the drawdown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum DraftLayout {
-    /// Threading above, ends counted from the right.
+    /// Threading above, draft and cloth turned by 180°: end 1 at the right, pick 1 at the top.
     #[default]
     Us,
-    /// Threading below, ends counted from the left.
+    /// Threading below, end 1 at the left, pick 1 at the bottom.
     Scandinavian,
-    /// The drawdown alone.
+    /// The drawdown alone, as that lies.
     Jacquard,
+}
+
+impl DraftLayout {
+    /// Whether draft and cloth are turned by 180°. No thread gets another number by that.
+    pub fn turns(self) -> bool {
+        self == Self::Us
+    }
 }
 
 /// What the pointer does on the draft.
@@ -293,9 +300,9 @@ pub const TABLE: &[Row] = &[
     row(Command::BecomeJacquard, Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])
     ,
     apart(row(Command::Words, Menu::Weave, "Name and notes…", "What the design is called, and what to remember", &[])),
-    apart(row(Command::Arrange(DraftLayout::Us), Menu::Weave, "US layout", "Threading above, ends counted from the right", &[])),
-    row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below, ends counted from the left", &[]),
-    row(Command::Arrange(DraftLayout::Jacquard), Menu::Weave, "Drawdown alone", "Neither threading nor treadling", &[]),
+    apart(row(Command::Arrange(DraftLayout::Us), Menu::Weave, "US layout", "Threading above; end 1 at the right, pick 1 at the top. The cloth is turned under the same light: satin areas swap between light and dark", &[])),
+    row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below; end 1 at the left, pick 1 at the bottom", &[]),
+    row(Command::Arrange(DraftLayout::Jacquard), Menu::Weave, "Drawdown alone", "Neither threading nor treadling; end 1 at the left, pick 1 at the bottom", &[]),
 
     row(Command::NextColourway, Menu::Colours, "Next colourway", "Weave in the next set of yarns, by name", &[plain(Key::Period)]),
     row(Command::PreviousColourway, Menu::Colours, "Previous colourway", "Weave in the set of yarns before, by name", &[plain(Key::Comma)]),

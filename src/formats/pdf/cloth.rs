@@ -37,6 +37,7 @@ pub(super) fn drawn(
     book: &mut Book,
     design: &Design,
     drawdown: &WeavePattern,
+    turned: bool,
 ) -> Result<(), PdfError> {
     let [width, height] = room(book);
     let pitch = [
@@ -69,8 +70,11 @@ pub(super) fn drawn(
             let mut colours = Vec::with_capacity(3 * pixels.0 as usize * pixels.1 as usize);
             for up in (0..pixels.1).rev() {
                 for right in 0..pixels.0 {
-                    let end = i64::from(first.0 + right * step);
-                    let pick = i64::from(first.1 + up * step);
+                    let (mut end, mut pick) = (first.0 + right * step, first.1 + up * step);
+                    if turned {
+                        (end, pick) = (ends - 1 - end, picks - 1 - pick);
+                    }
+                    let (end, pick) = (i64::from(end), i64::from(pick));
                     let Srgb(red, green, blue) = colour(design, drawdown, end, pick);
                     colours.extend([red, green, blue]);
                 }

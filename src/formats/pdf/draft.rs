@@ -5,9 +5,7 @@
 
 use super::PdfError;
 use super::sheet::{BLACK, Book, GREY, MARGIN, Page};
-use crate::design::{
-    Design, Draft, FirstEnd, FirstPick, Lifting, Loom, Shed, Structure, Ties, WeavePattern, derive,
-};
+use crate::design::{Design, Draft, Lifting, Loom, Shed, Structure, Ties, WeavePattern, derive};
 
 /// The most pages of drafts.
 const MOST_PAGES: u64 = 60;
@@ -65,6 +63,7 @@ pub(super) fn pages(
     book: &mut Book,
     design: &Design,
     drawdown: &WeavePattern,
+    turned: bool,
 ) -> Result<(), PdfError> {
     let drawn = Drawn::of(design, drawdown);
     let (above, beside) = drawn.around();
@@ -98,10 +97,11 @@ pub(super) fn pages(
                     along.min(picks - row * along),
                 ),
                 cell,
+                turned,
             };
             let mut page = book.page();
             heading(&mut page, height, design, &drawn, &part, pages);
-            part.draw(&mut page, height - HEAD, design, drawdown, &drawn);
+            part.draw(&mut page, height - HEAD, drawdown, &drawn);
             book.add(page);
         }
     }
@@ -135,7 +135,7 @@ fn heading(page: &mut Page, height: f32, design: &Design, drawn: &Drawn, part: &
     if pages > 1 {
         let ((end, pick), (ends, picks)) = (part.first, part.size);
         line += &format!(
-            "; here columns {} to {}, rows {} to {}",
+            "; here ends {} to {}, picks {} to {}",
             end + 1,
             end + ends,
             pick + 1,
@@ -154,18 +154,13 @@ struct Part {
     size: (u32, u32),
     /// Side of a cell in mm.
     cell: f32,
+    /// The first end is the last column from the left, the first pick the top row.
+    turned: bool,
 }
 
 impl Part {
     /// Draws below `top` mm above the margin.
-    fn draw(
-        &self,
-        page: &mut Page,
-        top: f32,
-        design: &Design,
-        drawdown: &WeavePattern,
-        drawn: &Drawn,
-    ) {
+    fn draw(&self, page: &mut Page, top: f32, drawdown: &WeavePattern, drawn: &Drawn) {
         let (above, _) = drawn.around();
         let ((ends, picks), cell) = (self.size, self.cell);
         let left = MARGIN;
@@ -174,6 +169,7 @@ impl Part {
         for row in 0..picks {
             for column in 0..ends {
                 if drawdown.get(self.first.0 + column, self.first.1 + row) {
+                    let (column, row) = (self.column(column), self.row(row));
                     self.mark(page, [left, bottom], column, row);
                 }
             }
@@ -184,7 +180,23 @@ impl Part {
             let beside = left + cell * (ends + 1) as f32;
             self.lifting(page, [beside, bottom], draft);
         }
-        self.numbers(page, [left, bottom], design, drawn);
+        self.numbers(page, [left, bottom], drawn);
+    }
+
+    /// The column, from the left, of an end of this part.
+    fn column(&self, end: u32) -> u32 {
+        match self.turned {
+            true => self.size.0 - 1 - end,
+            false => end,
+        }
+    }
+
+    /// The row, from below, of a pick of this part.
+    fn row(&self, pick: u32) -> u32 {
+        match self.turned {
+            true => self.size.1 - 1 - pick,
+            false => pick,
+        }
     }
 
     /// Fills a cell of a grid.
@@ -201,9 +213,10 @@ impl Part {
 
     /// Shaft 1 next to the cloth; each cell says its shaft.
     fn threading(&self, page: &mut Page, at: [f32; 2], draft: &Draft) {
-        for column in 0..self.size.0 {
-            for &shaft in draft.threading().row((self.first.0 + column) as usize) {
-                self.write(page, at, column, u32::from(shaft), u32::from(shaft) + 1);
+        for end in 0..self.size.0 {
+            for &shaft in draft.threading().row((self.first.0 + end) as usize) {
+                let shaft = u32::from(shaft);
+                self.write(page, at, self.column(end), shaft, shaft + 1);
             }
         }
         page.grid(at, self.cell, self.size.0, draft.shafts());
@@ -217,10 +230,10 @@ impl Part {
             Lifting::Treadled { treadling, .. } => treadling,
             Lifting::LiftPlan(plan) => plan,
         };
-        for row in 0..picks {
-            for &treadle in rows.row((self.first.1 + row) as usize) {
+        for pick in 0..picks {
+            for &treadle in rows.row((self.first.1 + pick) as usize) {
                 let treadle = u32::from(treadle);
-                self.write(page, [x, y], treadle, row, treadle + 1);
+                self.write(page, [x, y], treadle, self.row(pick), treadle + 1);
             }
         }
         page.grid([x, y], self.cell, columns, picks);
@@ -236,31 +249,23 @@ impl Part {
         }
     }
 
-    /// The numbers of every fourth end and pick, from the side the loom counts from.
-    fn numbers(&self, page: &mut Page, [x, y]: [f32; 2], design: &Design, drawn: &Drawn) {
+    /// The numbers of every fourth end and pick, as everywhere.
+    fn numbers(&self, page: &mut Page, [x, y]: [f32; 2], drawn: &Drawn) {
         page.ink(GREY);
-        let (ends, picks) = (design.ends(), design.picks());
         let (_, beside) = drawn.around();
-        for column in 0..self.size.0 {
-            let end = self.first.0 + column;
-            let number = match design.origin.first_end {
-                FirstEnd::Left => end + 1,
-                FirstEnd::Right => ends - end,
-            };
-            if number.is_multiple_of(4) || number == 1 {
-                let middle = x + self.cell * (column as f32 + 0.5);
+        let shown = |number: u32| number.is_multiple_of(4) || number == 1;
+        for end in 0..self.size.0 {
+            let number = self.first.0 + end + 1;
+            if shown(number) {
+                let middle = x + self.cell * (self.column(end) as f32 + 0.5);
                 page.number([middle, y - 2.0], 3.0, number);
             }
         }
         let right = x + self.cell * (self.size.0 + beside) as f32 + 3.5;
-        for row in 0..self.size.1 {
-            let pick = self.first.1 + row;
-            let number = match design.origin.first_pick {
-                FirstPick::Bottom => pick + 1,
-                FirstPick::Top => picks - pick,
-            };
-            if number.is_multiple_of(4) || number == 1 {
-                let middle = y + self.cell * (row as f32 + 0.5);
+        for pick in 0..self.size.1 {
+            let number = self.first.1 + pick + 1;
+            if shown(number) {
+                let middle = y + self.cell * (self.row(pick) as f32 + 0.5);
                 page.number([right, middle], 3.0, number);
             }
         }

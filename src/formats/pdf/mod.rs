@@ -55,6 +55,9 @@ pub struct PdfOptions<'p> {
     pub lists: bool,
     /// The cloth at true size.
     pub cloth: bool,
+    /// Draft and cloth are turned by 180°: end 1 at the right, pick 1 at the top. The threads
+    /// keep their numbers, and a [`PdfOptions::picture`] stays as it is.
+    pub turned: bool,
     /// A picture of the cloth; without one it is drawn as its drawdown in colour.
     pub picture: Option<Raster<'p>>,
 }
@@ -66,6 +69,7 @@ impl Default for PdfOptions<'_> {
             draft: true,
             lists: true,
             cloth: true,
+            turned: false,
             picture: None,
         }
     }
@@ -105,7 +109,7 @@ pub fn write(
 ) -> Result<Vec<u8>, PdfError> {
     let mut book = Book::new(options.paper);
     if options.draft {
-        draft::pages(&mut book, design, drawdown)?;
+        draft::pages(&mut book, design, drawdown, options.turned)?;
     }
     if options.lists {
         lists::pages(&mut book, design, drawdown);
@@ -113,7 +117,7 @@ pub fn write(
     if options.cloth {
         match &options.picture {
             Some(picture) => cloth::picture(&mut book, design, picture)?,
-            None => cloth::drawn(&mut book, design, drawdown)?,
+            None => cloth::drawn(&mut book, design, drawdown, options.turned)?,
         }
     }
     if book.is_empty() {

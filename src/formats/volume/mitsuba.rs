@@ -127,11 +127,7 @@ enum Surroundings<'s> {
 
 impl<'s> Surroundings<'s> {
     fn of(lights: &'s LightRig) -> Self {
-        let turn = if lights.is_turned_over() {
-            Vec3::new(-1.0, 1.0, -1.0)
-        } else {
-            Vec3::ONE
-        };
+        let turn = lights.sky_turn();
         match &lights.sky {
             Sky::Dark => Self::Dark,
             Sky::Dome(dome) if dome.zenith == dome.horizon && dome.zenith == dome.ground => {

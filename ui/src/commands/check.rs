@@ -84,11 +84,13 @@ fn report_json(opened: &Opened, report: &MillReport, warnings: &[String]) -> Val
     let seams = report.seams.iter().map(|seam| {
         json!({
             "kind": kind_name(seam.kind),
-            "thread": seam.thread,
+            "thread": seam.thread + 1,
             "length": seam.length.threads,
             "mm": seam.length.mm,
         })
     });
+    // As in the window, on paper and in files.
+    let from_1 = |threads: &[u32]| threads.iter().map(|at| at + 1).collect::<Vec<u32>>();
     let take_up = |of: &TakeUp| json!({ "mean": of.mean, "jammed": of.jammed });
     let yarns = report.yarns.iter().zip(design.yarns()).map(|(need, yarn)| {
         json!({
@@ -111,8 +113,8 @@ fn report_json(opened: &Opened, report: &MillReport, warnings: &[String]) -> Val
         "longest_float_mm": lengths(&report.longest, true),
         "longest_float_inside": lengths(&report.inside, false),
         "seam_floats": seams.collect::<Vec<_>>(),
-        "unbound_ends": report.unbound_ends,
-        "unbound_picks": report.unbound_picks,
+        "unbound_ends": from_1(&report.unbound_ends),
+        "unbound_picks": from_1(&report.unbound_picks),
         "loose_layer": report.loose.map(|layer| json!({ "ends": layer.ends, "picks": layer.picks })),
         "take_up": {
             "warp": take_up(&report.warp),

@@ -267,6 +267,7 @@ fn request(args: &StillArgs, backing: Backing) -> StillRequest {
         width: args.size.width,
         height: args.size.height,
         eye: None,
+        turned: false,
         view: args.view,
         width_mm: args.mm.map(|mm| mm as f32),
         centre_mm: None,

@@ -179,6 +179,11 @@ impl App {
             // What was drawn in this frame shows the state before.
             self.ctx.request_repaint();
             self.draft.changed(&session.document, change);
+            // What becomes a picture, or is one no more, is laid out as when it is opened.
+            let pictured = session.is_pictured();
+            if pictured != self.pictured {
+                self.lay_out();
+            }
         }
     }
 }

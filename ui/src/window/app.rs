@@ -69,6 +69,8 @@ pub struct App {
     /// Where exemplars are kept.
     pub(super) store: ExemplarStore,
     keys: Keys,
+    /// The open design was made of a picture.
+    pub(super) pictured: bool,
     /// The crossing of the endless cloth under the pointer, in whichever view.
     pub(super) hover: Option<(i64, i64)>,
     /// The window may close: nothing is unsaved, or the person said so.
@@ -119,6 +121,7 @@ impl App {
             settings_form: None,
             store,
             keys: Keys::default(),
+            pictured: false,
             hover: None,
             may_close: false,
             told_title: String::new(),
@@ -259,10 +262,9 @@ impl App {
     fn status_ui(&mut self, ui: &mut egui::Ui) {
         let phase = self.preview.phase();
         let document = self.session.as_ref().map(|session| &session.document);
-        let crossing = document.zip(self.hover).and_then(|(document, at)| {
-            let arrangement = self.draft.show.arrangement;
-            crossing::describe(document, at, arrangement, self.draft.limits)
-        });
+        let crossing = document
+            .zip(self.hover)
+            .and_then(|(document, at)| crossing::describe(document, at, self.draft.limits));
         let cancel = status::show(
             ui,
             &Status {
@@ -298,7 +300,7 @@ impl App {
         draft.set_hover(self.hover);
         preview.marked = self.hover;
         panes.section.follow(self.hover);
-        panes.arrangement = draft.show.arrangement;
+        (preview.turned, panes.turned) = (draft.turned(), draft.turned());
         Panel::left("tools")
             .exact_size(tokens::TOOLS_WIDTH)
             .resizable(false)
@@ -333,7 +335,6 @@ impl App {
         let show = &self.draft.show;
         self.settings.light = ctx.theme() == egui::Theme::Light;
         self.settings.layout = Some(self.layout.kept());
-        self.settings.arrangement = show.arrangement;
         self.settings.grid_lines = show.grid_lines;
         self.settings.ghosts = show.ghosts;
         self.settings.long_floats = show.long_floats;

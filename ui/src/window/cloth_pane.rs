@@ -8,6 +8,7 @@ use egui::{
     TextureHandle, TextureOptions, vec2,
 };
 
+use super::draft::picture_uv;
 use super::focus;
 use super::pace::Measured;
 use super::view::{ClothView, scale_bar};
@@ -136,8 +137,9 @@ pub fn draw_picture(
     if let (Some(centre_mm), Some(width_mm)) = (still.centre_mm, still.width_mm) {
         let aspect = still.width as f32 / still.height.max(1) as f32;
         let rect = view.picture_rect(pane, centre_mm, width_mm, aspect);
-        let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-        painter.image(texture.id(), rect, whole, Color32::WHITE);
+        // One that was made before the cloth was turned is shown turned.
+        let uv = picture_uv(still.turned != view.turned);
+        painter.image(texture.id(), rect, uv, Color32::WHITE);
     }
 }
 

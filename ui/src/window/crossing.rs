@@ -4,22 +4,15 @@ use pickglass::design::{FaceFloat, Structure, float_through};
 use pickglass::edit::Document;
 use pickglass::text::visible;
 
-use super::draft::end_number;
 use super::laid;
-use crate::command_table::DraftLayout;
 
 /// Floats are counted up to this many threads; what runs further snags at any sett.
 const LONGEST: u32 = 999;
 
 /// The crossing (end, pick) of the endless cloth as weavers would say it, counted from 1 as
-/// the layout counts; `None` where there is no cloth. `limits` = threads that an end and a pick
+/// in files and on paper, in every layout; `None` where there is no cloth. `limits` = threads that an end and a pick
 /// may pass over.
-pub fn describe(
-    document: &Document,
-    (end, pick): (i64, i64),
-    arrangement: DraftLayout,
-    limits: [u32; 2],
-) -> Option<String> {
+pub fn describe(document: &Document, (end, pick): (i64, i64), limits: [u32; 2]) -> Option<String> {
     let (design, drawdown) = (document.design(), document.drawdown());
     let lattice = design.lattice();
     let (home_end, home_pick) = lattice.wrap(end, pick, drawdown.ends(), drawdown.picks())?;
@@ -51,8 +44,7 @@ pub fn describe(
     // Threads are counted over the repeat of the colours, as a warper does.
     let (ends, picks) = laid::whole(design);
     let (end, pick) = lattice.wrap(end, pick, ends, picks)?;
-    let end = end_number(i64::from(end), i64::from(ends), arrangement);
-    let pick = pick + 1;
+    let (end, pick) = (end + 1, pick + 1);
     Some(format!(
         "end {end} · pick {pick} · {above} over {below} · {over}{region}"
     ))
@@ -69,20 +61,15 @@ mod tests {
         let opened = Opened::preset("oxford").expect("a preset");
         let document = Document::new(Design::clone(&opened.design));
         let ends = i64::from(opened.design.ends());
-        let told = |at, arrangement| describe(&document, at, arrangement, [7; 2]).expect("cloth");
-        let plain = told((0, 0), DraftLayout::Scandinavian);
+        let told = |at| describe(&document, at, [7; 2]).expect("cloth");
+        let plain = told((0, 0));
         assert!(
             plain.starts_with("end 1 · pick 1 · ") && plain.contains(" over "),
             "{plain}"
         );
-        let us = told((0, 0), DraftLayout::Us);
-        assert!(us.starts_with(&format!("end {ends} · pick 1 · ")), "{us}");
         // The next repeat is the same crossing, in whatever yarn.
-        let next = told((ends, 0), DraftLayout::Us);
-        assert!(
-            next.starts_with(&format!("end {ends} · pick 1 · ")),
-            "{next}"
-        );
+        let next = told((ends, 0));
+        assert!(next.starts_with("end 1 · pick 1 · "), "{next}");
     }
 
     #[test]
@@ -91,7 +78,7 @@ mod tests {
         let document = Document::new(Design::clone(&opened.design));
         let (ends, picks) = opened.design.colour_repeat();
         assert!(ends > 4 && picks > 4);
-        let told = |at| describe(&document, at, DraftLayout::Scandinavian, [7; 2]).expect("cloth");
+        let told = |at| describe(&document, at, [7; 2]).expect("cloth");
         assert!(told((9, 5)).starts_with("end 10 · pick 6 · "));
         let next = (ends as i64 + 9, 5 - picks as i64);
         assert!(told(next).starts_with("end 10 · pick 6 · "));
@@ -105,7 +92,7 @@ mod tests {
         let long = |limits| {
             let cells = (0..i64::from(ends) * i64::from(picks)).filter(|at| {
                 let at = (at % i64::from(ends), at / i64::from(ends));
-                let told = describe(&document, at, DraftLayout::Us, limits).expect("cloth");
+                let told = describe(&document, at, limits).expect("cloth");
                 told.ends_with("too long")
             });
             cells.count()

@@ -188,6 +188,8 @@ impl TypedPath {
 /// What is to be written: the design as it was when it was asked for.
 pub struct Writing {
     pub design: Arc<Design>,
+    /// Draft and cloth are shown turned by 180°; so are they printed.
+    pub turned: bool,
     /// The id of the state, see `Document::state_id`.
     pub state: u64,
     /// A file that the design is from, of which it may not hold everything.
@@ -393,12 +395,13 @@ impl Files {
         let work = move || {
             let Writing {
                 design,
+                turned,
                 state,
                 source,
             } = what;
             let may = output::check(&path, source.as_deref()).map_err(|error| error.to_string());
             let done = may.and_then(|()| match purpose {
-                Purpose::Print => print(&design, &path).map(|()| Vec::new()),
+                Purpose::Print => print(&design, turned, &path).map(|()| Vec::new()),
                 _ => formats::save(&design, &path, &options).map_err(|error| error.to_string()),
             });
             match done {
@@ -620,8 +623,12 @@ fn head(path: &Path) -> Vec<u8> {
 }
 
 /// Writes a design as pages.
-fn print(design: &Design, path: &Path) -> Result<(), String> {
-    let pages = pdf::write(design, &design.weave(), &PdfOptions::default());
+fn print(design: &Design, turned: bool, path: &Path) -> Result<(), String> {
+    let options = PdfOptions {
+        turned,
+        ..PdfOptions::default()
+    };
+    let pages = pdf::write(design, &design.weave(), &options);
     let bytes = pages.map_err(|error| error.to_string())?;
     atomic::write(path, &bytes).map_err(|error| error.to_string())
 }

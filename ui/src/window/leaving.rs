@@ -20,7 +20,7 @@ use super::session::{self, Session};
 use super::settings::KeptReference;
 use super::toasts::Grade;
 use super::volume;
-use crate::command_table::Tool;
+use crate::command_table::{DraftLayout, Tool};
 use crate::opened::Opened;
 
 impl App {
@@ -43,6 +43,7 @@ impl App {
         self.remember_reference();
         self.session = session;
         self.draft.forget();
+        self.lay_out();
         let path = self.session.as_ref().and_then(|s| s.path.as_deref());
         if let Some(kept) = self.settings.reference_of(path)
             && kept.image.exists()
@@ -55,13 +56,27 @@ impl App {
         self.asking.derive_always = false;
     }
 
+    /// Lays the draft out as the person chose; figured cloth, which no shaft loom weaves, as
+    /// its picture lies.
+    pub(super) fn lay_out(&mut self) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        self.pictured = session.is_pictured();
+        self.draft.show.arrangement = match session.is_figured() {
+            true => DraftLayout::Jacquard,
+            false => self.settings.arrangement,
+        };
+    }
+
     /// Takes what the threads finished, and files that were dropped.
     pub(super) fn pick_up(&mut self, ctx: &egui::Context) {
         for problem in self.autosave.poll() {
             self.warn(problem, "The open design is not touched by this.");
         }
         let session = self.session.as_ref();
-        self.files.write_chosen(ctx, || session.map(writing));
+        let turned = self.draft.turned();
+        (self.files).write_chosen(ctx, || session.map(|session| writing(session, turned)));
         while let Some(event) = self.files.poll(ctx) {
             self.file_event(ctx, event);
         }
@@ -318,7 +333,8 @@ impl App {
         match &session.path {
             Some(path) if !under_new_name => {
                 let path = path.clone();
-                self.files.save(ctx, path, writing(session));
+                let what = writing(session, self.draft.turned());
+                self.files.save(ctx, path, what);
             }
             _ => {
                 let proposed = session.file_name("ron");
@@ -328,10 +344,11 @@ impl App {
     }
 }
 
-/// What is to be written: the design as it is now.
-fn writing(session: &Session) -> Writing {
+/// What is to be written: the design as it is now, and whether it is shown turned.
+fn writing(session: &Session, turned: bool) -> Writing {
     Writing {
         design: session.design(),
+        turned,
         state: session.document.state_id(),
         source: session.source.clone(),
     }

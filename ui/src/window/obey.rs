@@ -162,6 +162,7 @@ impl App {
             }
             Command::Arrange(arrangement) => {
                 show.arrangement = arrangement;
+                self.settings.arrangement = arrangement;
                 self.draft.obey(Command::Fit);
                 return true;
             }

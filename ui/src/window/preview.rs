@@ -61,6 +61,8 @@ pub struct Preview {
     pub quality: Quality,
     pub paused: bool,
     pub pane: ClothPane,
+    /// The cloth is turned by 180°, as the draft is.
+    pub turned: bool,
     /// The crossing that is marked on the cloth, as in every view.
     pub marked: Option<(i64, i64)>,
     /// Millimetres a point of this screen.
@@ -101,6 +103,7 @@ impl Preview {
             quality: Quality::default(),
             paused: false,
             pane: ClothPane::default(),
+            turned: false,
             marked: None,
             mm_per_point: ACTUAL_SIZE,
             eye: None,
@@ -298,6 +301,7 @@ impl Preview {
             Some(view) => view,
             None => self.initial_view(pane, &laid),
         };
+        view.turned = self.turned;
         if document.design().colourways().is_empty() {
             self.sheet = None;
         }
@@ -439,6 +443,7 @@ impl Preview {
     fn look(&self) -> StillRequest {
         StillRequest {
             view: self.view,
+            turned: self.turned,
             eye: self.eye.map(|[azimuth, elevation]| Heading {
                 azimuth: azimuth.round() as i16,
                 elevation: elevation.round() as i16,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pickglass::design::{
-    Design, Draft, Family, Lifting, Shed, Srgb, Structure, Ties, Yarn, YarnId, YarnMaps, usual_sett,
+    Design, Draft, Family, Lifting, Shed, Srgb, Structure, Ties, Yarn, YarnId, YarnMaps,
+    shafts_needed, usual_sett,
 };
 use pickglass::edit::Document;
 use pickglass::text::visible;
@@ -13,6 +14,10 @@ use crate::opened::Opened;
 
 /// Ends and picks of a new design.
 const NEW_SIZE: u32 = 16;
+/// The most shafts that a drawdown may need to be a draft, and the most crossings of one
+/// that is asked.
+const MOST_SHAFTS: u32 = 40;
+const LARGEST_DERIVED: u64 = 1 << 20;
 /// Shafts and treadles of a new design.
 const SHAFTS: u16 = 4;
 
@@ -48,6 +53,28 @@ impl Session {
     /// What the designer calls it.
     pub fn name(&self) -> &str {
         &self.document.design().name
+    }
+
+    /// Whether it was made of a picture.
+    pub fn is_pictured(&self) -> bool {
+        match self.document.design().structure() {
+            Structure::Regions(regions) => regions.source().is_some(),
+            _ => false,
+        }
+    }
+
+    /// Whether it is figured cloth, which no shaft loom weaves: regions, or a drawdown that
+    /// takes more shafts than looms have.
+    pub fn is_figured(&self) -> bool {
+        let drawdown = self.document.drawdown();
+        match self.document.design().structure() {
+            Structure::Draft(_) | Structure::Weave(_) => false,
+            Structure::Regions(_) => true,
+            Structure::Pattern(_) => {
+                let crossings = u64::from(drawdown.ends()) * u64::from(drawdown.picks());
+                crossings > LARGEST_DERIVED || shafts_needed(drawdown) > MOST_SHAFTS
+            }
+        }
     }
 
     /// The window's title: an asterisk says that something is not saved.

@@ -1,7 +1,8 @@
 //! Where the cloth lies on the screen: pan and zoom as plain arithmetic.
 //!
 //! Cloth coordinates are mm, x to the right and y up on the face (pick 0 lowest); the
-//! screen's y runs down. Seen from the back, x runs to the left.
+//! screen's y runs down. Seen from the back, x runs to the left; of a cloth that is turned by
+//! 180°, both run the other way.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
@@ -17,6 +18,8 @@ pub struct ClothView {
     pub mm_per_point: f32,
     /// Seen from behind.
     pub mirrored: bool,
+    /// Turned by 180° as it lies.
+    pub turned: bool,
 }
 
 impl ClothView {
@@ -29,6 +32,7 @@ impl ClothView {
             centre_mm,
             mm_per_point: 1.0,
             mirrored: false,
+            turned: false,
         };
         view.set_scale(width_mm / pane.width().max(1.0));
         view
@@ -46,32 +50,35 @@ impl ClothView {
         self.mm_per_point * pane.width()
     }
 
-    fn sign(&self) -> f32 {
-        if self.mirrored { -1.0 } else { 1.0 }
+    /// Which way x runs to the right and y upwards: +1 or −1.
+    fn ways(&self) -> [f32; 2] {
+        let way = |back: bool| if back { -1.0 } else { 1.0 };
+        [way(self.mirrored != self.turned), way(self.turned)]
     }
 
     /// Where a point of the cloth lies on the screen.
     pub fn to_screen(self, pane: Rect, cloth_mm: [f32; 2]) -> Pos2 {
-        let middle = pane.center();
+        let (middle, [right, up]) = (pane.center(), self.ways());
         pos2(
-            middle.x + self.sign() * (cloth_mm[0] - self.centre_mm[0]) / self.mm_per_point,
-            middle.y - (cloth_mm[1] - self.centre_mm[1]) / self.mm_per_point,
+            middle.x + right * (cloth_mm[0] - self.centre_mm[0]) / self.mm_per_point,
+            middle.y - up * (cloth_mm[1] - self.centre_mm[1]) / self.mm_per_point,
         )
     }
 
     /// Which point of the cloth lies under a point of the screen.
     pub fn to_cloth(self, pane: Rect, screen: Pos2) -> [f32; 2] {
-        let offset = screen - pane.center();
+        let (offset, [right, up]) = (screen - pane.center(), self.ways());
         [
-            self.centre_mm[0] + self.sign() * offset.x * self.mm_per_point,
-            self.centre_mm[1] - offset.y * self.mm_per_point,
+            self.centre_mm[0] + right * offset.x * self.mm_per_point,
+            self.centre_mm[1] - up * offset.y * self.mm_per_point,
         ]
     }
 
     /// Moves the cloth with the pointer.
     pub fn pan(&mut self, delta: Vec2) {
-        self.centre_mm[0] -= self.sign() * delta.x * self.mm_per_point;
-        self.centre_mm[1] += delta.y * self.mm_per_point;
+        let [right, up] = self.ways();
+        self.centre_mm[0] -= right * delta.x * self.mm_per_point;
+        self.centre_mm[1] += up * delta.y * self.mm_per_point;
     }
 
     /// Looks `factor` times closer, with the cloth under `anchor` staying there.
@@ -129,14 +136,21 @@ mod tests {
         Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 600.0))
     }
 
-    #[test]
-    fn screen_and_cloth_are_inverse() {
-        for mirrored in [false, true] {
-            let view = ClothView {
+    /// Seen from the face and from behind, unturned and turned.
+    fn all_ways() -> [ClothView; 4] {
+        [(false, false), (true, false), (false, true), (true, true)].map(|(mirrored, turned)| {
+            ClothView {
                 centre_mm: [3.0, -2.0],
                 mm_per_point: 0.02,
                 mirrored,
-            };
+                turned,
+            }
+        })
+    }
+
+    #[test]
+    fn screen_and_cloth_are_inverse() {
+        for view in all_ways() {
             let cloth = view.to_cloth(pane(), pos2(333.0, 77.0));
             let screen = view.to_screen(pane(), cloth);
             assert!((screen - pos2(333.0, 77.0)).length() < 1e-2);
@@ -145,12 +159,7 @@ mod tests {
 
     #[test]
     fn zoom_keeps_what_is_under_the_pointer() {
-        for mirrored in [false, true] {
-            let mut view = ClothView {
-                centre_mm: [3.0, -2.0],
-                mm_per_point: 0.02,
-                mirrored,
-            };
+        for mut view in all_ways() {
             let anchor = pos2(700.0, 120.0);
             let before = view.to_cloth(pane(), anchor);
             view.zoom(pane(), anchor, 1.7);
@@ -171,11 +180,25 @@ mod tests {
 
     #[test]
     fn the_cloth_follows_the_pointer() {
-        let mut view = ClothView::across(pane(), [0.0, 0.0], 8.0);
-        let before = view.to_cloth(pane(), pos2(200.0, 200.0));
-        view.pan(vec2(30.0, -20.0));
-        let after = view.to_cloth(pane(), pos2(230.0, 180.0));
-        assert!((before[0] - after[0]).abs() < 1e-5 && (before[1] - after[1]).abs() < 1e-5);
+        for mut view in all_ways() {
+            let before = view.to_cloth(pane(), pos2(200.0, 200.0));
+            view.pan(vec2(30.0, -20.0));
+            let after = view.to_cloth(pane(), pos2(230.0, 180.0));
+            assert!((before[0] - after[0]).abs() < 1e-4 && (before[1] - after[1]).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_turned_cloth_begins_at_the_upper_right() {
+        let [plain, _, turned, turned_back] = all_ways();
+        for (x, y) in [(0.0, 0.0), (5.0, -1.0)] {
+            let there = plain.to_screen(pane(), [x, y]) - pane().center();
+            let here = turned.to_screen(pane(), [x, y]) - pane().center();
+            assert!((there + here).length() < 1e-3, "turned by 180°");
+            // Turned over as one turns a page, and then turned.
+            let back = turned_back.to_screen(pane(), [x, y]) - pane().center();
+            assert!((back.x + here.x).abs() < 1e-3 && (back.y - here.y).abs() < 1e-3);
+        }
     }
 
     #[test]

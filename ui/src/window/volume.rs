@@ -66,6 +66,7 @@ impl Wanted {
         StillRequest {
             view: shown.view,
             eye: shown.eye,
+            turned: shown.turned,
             light: shown.light.clone(),
             exposure_ev: shown.exposure_ev,
             seed: shown.seed,

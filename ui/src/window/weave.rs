@@ -68,11 +68,13 @@ impl App {
             Command::TurnHalf => Edit::Rotate(2),
             Command::TurnQuarter => Edit::Rotate(1),
             Command::Roll(toward) => {
+                // As it is seen: of a turned cloth the next end lies at the left.
+                let way = if self.draft.turned() { -1 } else { 1 };
                 let (ends, picks) = match toward {
-                    Toward::Left => (-1, 0),
-                    Toward::Right => (1, 0),
-                    Toward::Up => (0, 1),
-                    Toward::Down => (0, -1),
+                    Toward::Left => (-way, 0),
+                    Toward::Right => (way, 0),
+                    Toward::Up => (0, way),
+                    Toward::Down => (0, -way),
                 };
                 Edit::Roll { ends, picks }
             }
@@ -115,7 +117,10 @@ impl App {
             }
             Command::DeriveDraft => {
                 if self.draft.show.arrangement == DraftLayout::Jacquard {
-                    self.draft.show.arrangement = DraftLayout::Us;
+                    self.draft.show.arrangement = match self.settings.arrangement {
+                        DraftLayout::Jacquard => DraftLayout::Us,
+                        chosen => chosen,
+                    };
                 }
                 Edit::DeriveDraft { after: None }
             }

@@ -122,13 +122,7 @@ impl Glass {
             && let (Some(centre), Some(width)) = (still.centre_mm, still.width_mm)
         {
             // The newest picture may be of where the pointer was a moment ago.
-            let [x, y] = view.to_cloth(pane, at);
-            let off = vec2(x - centre[0], centre[1] - y) / width.max(1e-6);
-            let off = if view.mirrored {
-                vec2(-off.x, off.y)
-            } else {
-                off
-            };
+            let off = (at - view.to_screen(pane, centre)) * (view.mm_per_point / width.max(1e-6));
             painter.add(round_picture(at, radius, texture.id(), off));
         }
         painter.circle_stroke(at, radius, Stroke::new(3.0, palette.raised));

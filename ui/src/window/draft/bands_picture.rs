@@ -114,7 +114,7 @@ fn lines(painter: &Painter, grid: &CellGrid, areas: &Areas, loom: &Loom, palette
     let [ends, picks] = grid.visible();
     if grid.cell >= 6.0 {
         for pick in picks {
-            rows(areas.treadling, grid.y(pick));
+            rows(areas.treadling, grid.line_y(pick));
         }
     }
     let mut columns = |area: Rect, at: f32| {
@@ -130,7 +130,7 @@ fn lines(painter: &Painter, grid: &CellGrid, areas: &Areas, loom: &Loom, palette
     }
     if grid.cell >= 6.0 {
         for end in ends {
-            columns(areas.threading, grid.x(end));
+            columns(areas.threading, grid.line_x(end));
         }
     }
     painter.add(Shape::mesh(mesh));

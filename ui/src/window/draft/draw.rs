@@ -9,7 +9,6 @@ use super::super::action::Mark;
 use super::super::laid;
 use super::areas::Areas;
 use super::grid::{CellGrid, ruler_step};
-use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 
 /// Grid lines are drawn between cells of at least so many pixels.
@@ -105,14 +104,14 @@ pub fn grid_lines(painter: &Painter, grid: &CellGrid) {
     let [ends, picks] = grid.visible();
     for end in ends {
         let line = Rect::from_min_size(
-            pos2(grid.x(end), grid.pane.top()),
+            pos2(grid.line_x(end), grid.pane.top()),
             vec2(pixel, grid.pane.height()),
         );
         mesh.add_colored_rect(line, line_colour(end));
     }
     for pick in picks {
         let line = Rect::from_min_size(
-            pos2(grid.pane.left(), grid.y(pick) - pixel),
+            pos2(grid.pane.left(), grid.line_y(pick)),
             vec2(grid.pane.width(), pixel),
         );
         mesh.add_colored_rect(line, line_colour(pick));
@@ -337,14 +336,12 @@ pub fn crosshair(painter: &Painter, grid: &CellGrid, areas: &Areas, (end, pick):
     }
 }
 
-/// The numbers of ends and picks, counted from 1 over the repeat of the colours and, for ends, from the side the layout
-/// counts from.
+/// The numbers of ends and picks, counted from 1 over the repeat of the colours.
 pub fn rulers(
     painter: &Painter,
     grid: &CellGrid,
     areas: &Areas,
     design: &Design,
-    arrangement: DraftLayout,
     hover: Option<(i64, i64)>,
     palette: &Palette,
 ) {
@@ -364,7 +361,7 @@ pub fn rulers(
         }
     };
     for end in seen_ends {
-        let number = end_number(end, ends, arrangement);
+        let number = end.rem_euclid(ends) + 1;
         let here = hover.is_some_and(|(at, _)| at == end) && grid.cell >= LINES_FROM;
         let near = hover.is_some_and(|(at, _)| {
             ((at - end).abs() as f64) * grid.cell < 26.0 * density && at != end
@@ -420,15 +417,6 @@ fn is_numbered(number: i64, count: i64, cell: f64, width: f64) -> bool {
     number == 1 || (number % ruler_step(cell, width) == 0 && to_next >= width)
 }
 
-/// The number a weaver gives an end: from 1, on the side where the layout begins to count.
-pub fn end_number(end: i64, ends: i64, arrangement: DraftLayout) -> i64 {
-    let home = end.rem_euclid(ends.max(1));
-    match arrangement {
-        DraftLayout::Us => ends - home,
-        DraftLayout::Scandinavian | DraftLayout::Jacquard => home + 1,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -454,14 +442,6 @@ mod tests {
         assert_eq!(on_ruler(ruler, number(290.0), false), None);
         assert_eq!(on_ruler(ruler, number(95.0), true), Some(number(100.0)));
         assert_eq!(on_ruler(ruler, number(290.0), true), Some(number(280.0)));
-    }
-
-    #[test]
-    fn ends_are_counted_from_the_side_of_the_layout() {
-        assert_eq!(end_number(0, 16, DraftLayout::Us), 16);
-        assert_eq!(end_number(15, 16, DraftLayout::Us), 1);
-        assert_eq!(end_number(-1, 16, DraftLayout::Us), 1);
-        assert_eq!(end_number(17, 16, DraftLayout::Scandinavian), 2);
     }
 
     #[test]

@@ -2,9 +2,10 @@
 //! the way from a point to a crossing and back.
 //!
 //! The endless cloth's end 0 is at x = 0 and its pick 0 at y = 0, y upwards; the screen's
-//! y runs down.
+//! y runs down. A cloth that is turned by 180° has its ends from the right and its picks
+//! from above: whatever maps a place to a crossing asks [`CellGrid`], which alone knows.
 
-use egui::{Pos2, Rect, pos2};
+use egui::{Pos2, Rect, Vec2, pos2};
 
 /// Physical pixels a crossing, from the furthest look to the closest. Below one pixel the
 /// steps halve, so that a pixel is a whole square of crossings.
@@ -80,7 +81,7 @@ impl Look {
     }
 
     /// Looks so many steps closer, with the crossing at `anchor` (in pixels from the
-    /// middle, y upwards) staying where it is.
+    /// middle, along ends and picks) staying where it is.
     pub fn zoom(&mut self, steps: i32, anchor: [f64; 2]) {
         let before = self.cell();
         let last = STEPS.len() as i32 - 1;
@@ -92,7 +93,7 @@ impl Look {
         }
     }
 
-    /// Moves the cloth by physical pixels, y upwards, but never so far that the first
+    /// Moves the cloth by physical pixels, along ends and picks, but never so far that the first
     /// repeat of `ends` × `picks` and its neighbours are lost from sight.
     pub fn pan(&mut self, by: [f64; 2], ends: u32, picks: u32) {
         let cell = self.cell();
@@ -113,14 +114,17 @@ pub struct CellGrid {
     pub density: f64,
     /// Physical pixels a crossing.
     pub cell: f64,
-    /// Physical pixel of the lower left corner of crossing (0, 0): from the left, and from
-    /// the top, of the screen.
+    /// Physical pixel of the corner of crossing (0, 0) where both threads are counted from:
+    /// from the left, and from the top, of the screen.
     pub origin: [f64; 2],
+    /// The cloth is turned by 180°: ends run to the left and picks downwards.
+    pub turned: bool,
 }
 
 impl CellGrid {
     /// A look in a pane; corners of cells fall on physical pixels.
-    pub fn new(pane: Rect, look: &Look, density: f32) -> Self {
+    pub fn new(pane: Rect, look: &Look, density: f32, turned: bool) -> Self {
+        let way = way(turned);
         let density = f64::from(density);
         let cell = look.cell();
         let middle = [pane.center().x, pane.center().y].map(|at| f64::from(at) * density);
@@ -129,59 +133,100 @@ impl CellGrid {
             density,
             cell,
             origin: [
-                (middle[0] - look.centre[0] * cell).round(),
-                (middle[1] + look.centre[1] * cell).round(),
+                (middle[0] - way * look.centre[0] * cell).round(),
+                (middle[1] + way * look.centre[1] * cell).round(),
             ],
+            turned,
         }
     }
 
-    /// Points from the left of the screen to the left border of an end.
+    /// Points from the left of the screen to the border between an end and the one before.
     pub fn x(&self, end: i64) -> f32 {
-        ((self.origin[0] + end as f64 * self.cell) / self.density) as f32
+        ((self.origin[0] + way(self.turned) * end as f64 * self.cell) / self.density) as f32
     }
 
-    /// Points from the top of the screen to the lower border of a pick.
+    /// Points from the top of the screen to the border between a pick and the one before.
     pub fn y(&self, pick: i64) -> f32 {
-        ((self.origin[1] - pick as f64 * self.cell) / self.density) as f32
+        ((self.origin[1] - way(self.turned) * pick as f64 * self.cell) / self.density) as f32
+    }
+
+    /// Left of a line of one pixel on the border before an end, within that end.
+    pub fn line_x(&self, end: i64) -> f32 {
+        self.x(end) - if self.turned { self.pixel() } else { 0.0 }
+    }
+
+    /// Top of a line of one pixel on the border before a pick, within that pick.
+    pub fn line_y(&self, pick: i64) -> f32 {
+        self.y(pick) - if self.turned { 0.0 } else { self.pixel() }
+    }
+
+    /// What of a picture of the cloth, unturned, its upper left and lower right corner on
+    /// the screen show.
+    pub fn picture_uv(&self) -> Rect {
+        picture_uv(self.turned)
     }
 
     /// The crossing (end, pick) under a point.
     pub fn crossing(&self, at: Pos2) -> (i64, i64) {
         let [x, y] = [at.x, at.y].map(|at| f64::from(at) * self.density);
         (
-            ((x - self.origin[0]) / self.cell).floor() as i64,
-            ((self.origin[1] - y) / self.cell).floor() as i64,
+            (way(self.turned) * (x - self.origin[0]) / self.cell).floor() as i64,
+            (way(self.turned) * (self.origin[1] - y) / self.cell).floor() as i64,
         )
     }
 
     /// The rectangle of a box of crossings.
     pub fn rect(&self, end: i64, pick: i64, ends: i64, picks: i64) -> Rect {
-        Rect::from_min_max(
-            pos2(self.x(end), self.y(pick + picks)),
-            pos2(self.x(end + ends), self.y(pick)),
+        Rect::from_two_pos(
+            pos2(self.x(end), self.y(pick)),
+            pos2(self.x(end + ends), self.y(pick + picks)),
         )
     }
 
     /// First and last crossing, both ways, that can be seen.
     pub fn visible(&self) -> [std::ops::RangeInclusive<i64>; 2] {
         let inner = self.pane.shrink(0.01);
-        let (left, top) = self.crossing(inner.left_top());
-        let (right, bottom) = self.crossing(inner.right_bottom());
-        [left..=right, bottom..=top]
+        let mut corners = [inner.left_bottom(), inner.right_top()].map(|at| self.crossing(at));
+        if self.turned {
+            corners.reverse();
+        }
+        let [(first_end, first_pick), (last_end, last_pick)] = corners;
+        [first_end..=last_end, first_pick..=last_pick]
     }
 
-    /// Pixels from the pane's middle, y upwards: what [`Look::zoom`] takes.
+    /// A way on the screen, in points, as one over the cloth, in physical pixels along ends
+    /// and picks: what [`Look::pan`] takes.
+    pub fn over_cloth(&self, by: Vec2) -> [f64; 2] {
+        [by.x, -by.y].map(|by| way(self.turned) * f64::from(by) * self.density)
+    }
+
+    /// Pixels from the pane's middle, along ends and picks: what [`Look::zoom`] takes.
     pub fn off_middle(&self, at: Pos2) -> [f64; 2] {
-        let offset = at - self.pane.center();
-        [
-            f64::from(offset.x) * self.density,
-            f64::from(-offset.y) * self.density,
-        ]
+        self.over_cloth(at - self.pane.center())
     }
 
     /// One physical pixel, points.
     pub fn pixel(&self) -> f32 {
         (1.0 / self.density) as f32
+    }
+}
+
+/// Which way ends run to the right and picks upwards: +1, or −1 where the cloth is turned.
+pub fn way(turned: bool) -> f64 {
+    if turned { -1.0 } else { 1.0 }
+}
+
+/// As [`CellGrid::picture_uv`], for any view of a cloth.
+pub fn picture_uv(turned: bool) -> Rect {
+    let corners = [Pos2::ZERO, pos2(1.0, 1.0)];
+    let [first, last] = if turned {
+        [corners[1], corners[0]]
+    } else {
+        corners
+    };
+    Rect {
+        min: first,
+        max: last,
     }
 }
 
@@ -209,12 +254,15 @@ mod tests {
     }
 
     #[test]
-    fn a_point_of_a_cell_is_in_that_cell_at_every_zoom_and_density() {
-        for density in [1.0, 1.25, 2.0] {
+    fn a_point_of_a_cell_is_in_that_cell_at_every_zoom_density_and_turn() {
+        for (density, turned) in [1.0, 1.25, 2.0]
+            .into_iter()
+            .flat_map(|d| [(d, false), (d, true)])
+        {
             let mut look = Look::fitting(40, 30, [632.0, 464.0]);
             for _ in 0..40 {
                 look.zoom(-1, [3.0, 4.0]);
-                let grid = CellGrid::new(pane(), &look, density);
+                let grid = CellGrid::new(pane(), &look, density, turned);
                 for (end, pick) in [(0, 0), (-7, 12), (1000, -3)] {
                     let middle = grid.rect(end, pick, 1, 1).center();
                     if grid.cell >= 1.0 {
@@ -228,16 +276,51 @@ mod tests {
     }
 
     #[test]
+    fn a_turned_cloth_lies_as_the_other_does_turned_about_the_panes_middle() {
+        // Of whole pixels both ways, so that both origins are rounded alike.
+        let pane = Rect::from_min_max(pos2(100.0, 52.0), pos2(732.0, 516.0));
+        let look = Look::fitting(40, 30, [632.0, 464.0]);
+        let plain = CellGrid::new(pane, &look, 1.0, false);
+        let turned = CellGrid::new(pane, &look, 1.0, true);
+        for (end, pick) in [(0, 0), (39, 29), (-7, 12), (100, -3)] {
+            let there = plain.rect(end, pick, 1, 1);
+            let here = turned.rect(end, pick, 1, 1);
+            let about = |at: Pos2| pane.center() + (pane.center() - at);
+            assert!((about(there.min) - here.max).length() < 1e-3);
+            assert!((about(there.max) - here.min).length() < 1e-3);
+        }
+        // End 0 lies at the right and pick 0 at the top.
+        let (first, last) = (turned.rect(0, 0, 1, 1), turned.rect(39, 29, 1, 1));
+        assert!(first.left() > last.right() && first.bottom() < last.top());
+        assert_eq!(plain.visible(), turned.visible());
+    }
+
+    #[test]
+    fn the_cloth_goes_with_the_pointer_whichever_way_it_lies() {
+        for turned in [false, true] {
+            let mut look = Look::fitting(40, 30, [632.0, 464.0]);
+            let grid = CellGrid::new(pane(), &look, 2.0, turned);
+            let before = grid.rect(3, 4, 1, 1).center();
+            let by = egui::vec2(24.0, -36.0);
+            look.pan(grid.over_cloth(by), 40, 30);
+            let after = CellGrid::new(pane(), &look, 2.0, turned).rect(3, 4, 1, 1);
+            assert!((after.center() - before - by).length() < 1.0, "{turned}");
+        }
+    }
+
+    #[test]
     fn zoom_keeps_the_crossing_under_the_pointer() {
-        let mut look = Look::fitting(400, 300, [632.0, 464.0]);
-        let at = pos2(222.0, 333.0);
-        for steps in [3, 4, -2, 5] {
-            let grid = CellGrid::new(pane(), &look, 1.0);
-            let before = grid.crossing(at);
-            look.zoom(steps, grid.off_middle(at));
-            let after = CellGrid::new(pane(), &look, 1.0).crossing(at);
-            // The origin is rounded to a pixel, which may move it by one crossing.
-            assert!((before.0 - after.0).abs() <= 1 && (before.1 - after.1).abs() <= 1);
+        for turned in [false, true] {
+            let mut look = Look::fitting(400, 300, [632.0, 464.0]);
+            let at = pos2(222.0, 333.0);
+            for steps in [3, 4, -2, 5] {
+                let grid = CellGrid::new(pane(), &look, 1.0, turned);
+                let before = grid.crossing(at);
+                look.zoom(steps, grid.off_middle(at));
+                let after = CellGrid::new(pane(), &look, 1.0, turned).crossing(at);
+                // The origin is rounded to a pixel, which may move it by one crossing.
+                assert!((before.0 - after.0).abs() <= 1 && (before.1 - after.1).abs() <= 1);
+            }
         }
     }
 

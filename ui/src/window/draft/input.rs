@@ -52,7 +52,7 @@ impl DraftPane {
                 key: "drawdown",
                 name: &name,
                 blocked,
-                rows_down: false,
+                arrows: arrows(grid, areas, None),
             },
             to_cell,
         );
@@ -147,12 +147,12 @@ impl DraftPane {
         });
         let mut pan = [0.0; 2];
         if panning && down {
-            pan = [delta.x, -delta.y].map(|by| f64::from(by) * grid.density);
+            pan = grid.over_cloth(delta);
         }
         let over = at.filter(|at| areas.drawdown.contains(*at) && !covered);
         if let Some(at) = over.filter(|_| ui.rect_contains_pointer(areas.drawdown)) {
             if keys.shift {
-                pan[0] += f64::from(wheel.x + wheel.y) * grid.density;
+                pan[0] += grid.over_cloth(egui::vec2(wheel.x + wheel.y, 0.0))[0];
             } else {
                 self.wheel += wheel.y + (pinch - 1.0) * 200.0;
                 let steps = (self.wheel / WHEEL_STEP).trunc();
@@ -273,7 +273,7 @@ impl DraftPane {
                     key: band.name(false),
                     name,
                     blocked,
-                    rows_down: !areas.above && matches!(band, Band::Threading | Band::TieUp),
+                    arrows: arrows(grid, areas, Some(band)),
                 },
                 to_cell,
             );
@@ -371,6 +371,19 @@ impl DraftPane {
                 actions.push(Action::Cancel);
             }
         }
+    }
+}
+
+/// Which way an arrow to the right and one upwards go over the cells of a band, or of the
+/// drawdown: +1 to higher numbers. Shafts and treadles are counted away from the drawdown.
+fn arrows(grid: &CellGrid, areas: &Areas, band: Option<Band>) -> [i64; 2] {
+    let thread = if grid.turned { -1 } else { 1 };
+    let shaft = if areas.above { 1 } else { -1 };
+    match band {
+        None | Some(Band::WarpBar | Band::WeftBar) => [thread, thread],
+        Some(Band::Threading) => [thread, shaft],
+        Some(Band::TieUp) => [1, shaft],
+        Some(Band::Treadling) => [1, thread],
     }
 }
 

@@ -32,7 +32,7 @@ use crate::tokens;
 use areas::Areas;
 use bands::Band;
 pub use bands::draft as draft_of;
-pub use draw::end_number;
+pub use grid::picture_uv;
 use grid::{CellGrid, Look};
 pub use held_back::HeldBack;
 use reference::Reference;
@@ -211,6 +211,11 @@ impl DraftPane {
         }
     }
 
+    /// Whether draft and cloth are turned by 180°.
+    pub fn turned(&self) -> bool {
+        self.show.arrangement.turns()
+    }
+
     /// The tool in use.
     pub fn tool(&self) -> Tool {
         self.tool
@@ -342,7 +347,7 @@ impl DraftPane {
         });
         let first = self.first_shaft;
         let areas = Areas::split(pane, design, arrangement, look.cell(), density, first);
-        let grid = CellGrid::new(areas.drawdown, &look, density);
+        let grid = CellGrid::new(areas.drawdown, &look, density, self.turned());
         #[cfg(test)]
         {
             self.laid = Some((areas, grid));
@@ -379,6 +384,17 @@ impl DraftPane {
     pub fn place_of(&self, (end, pick): Cell) -> egui::Pos2 {
         let (_, grid) = self.laid.expect("shown once");
         grid.rect(end, pick, 1, 1).center()
+    }
+
+    /// The crossing at a place of the screen.
+    pub fn crossing_at(&self, at: egui::Pos2) -> Cell {
+        let (_, grid) = self.laid.expect("shown once");
+        grid.crossing(at)
+    }
+
+    /// Where the drawdown lies on the screen.
+    pub fn drawdown_rect(&self) -> egui::Rect {
+        self.laid.expect("shown once").0.drawdown
     }
 
     /// Physical pixels a crossing.

@@ -12,7 +12,7 @@ use super::super::focus;
 use super::super::laid;
 use super::super::task::{Outcome, Task};
 use super::areas::Areas;
-use super::grid::CellGrid;
+use super::grid::{CellGrid, way};
 use super::tiles;
 use crate::tokens::{self, Palette};
 
@@ -104,20 +104,20 @@ impl Navigator {
         painter.rect_filled(rect.expand(2.0), 0.0, palette.raised);
         // The middle one of three by three repeats is the design itself.
         let (ends, picks) = (f64::from(ends), f64::from(picks));
+        let side = |share: f64| if grid.turned { 1.0 - share } else { share };
         let to_screen = |end: f64, pick: f64| {
             pos2(
-                rect.left() + ((end + ends) / (3.0 * ends)) as f32 * rect.width(),
-                rect.bottom() - ((pick + picks) / (3.0 * picks)) as f32 * rect.height(),
+                rect.left() + side((end + ends) / (3.0 * ends)) as f32 * rect.width(),
+                rect.bottom() - side((pick + picks) / (3.0 * picks)) as f32 * rect.height(),
             )
         };
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let inner = painter.with_clip_rect(rect);
         for (end, pick) in repeats(design) {
             let place = Rect::from_two_pos(
                 to_screen(end as f64, pick as f64),
                 to_screen(end as f64 + ends, pick as f64 + picks),
             );
-            inner.image(texture, place, whole, Color32::WHITE);
+            inner.image(texture, place, grid.picture_uv(), Color32::WHITE);
         }
         let [seen_ends, seen_picks] = grid.visible();
         let seen = Rect::from_two_pos(
@@ -139,7 +139,8 @@ impl Navigator {
         if response.has_focus() {
             focus::ring(&painter, rect.expand(2.0), &palette);
         }
-        let [across, along] = focus::arrows(ui, &response).map(f64::from);
+        let way = way(grid.turned);
+        let [across, along] = focus::arrows(ui, &response).map(|by| way * f64::from(by));
         if across != 0.0 || along != 0.0 {
             let middle = |seen: &RangeInclusive<i64>| (seen.start() + seen.end() + 1) as f64 / 2.0;
             return Some([
@@ -150,8 +151,8 @@ impl Navigator {
         let at = response.interact_pointer_pos()?;
         let share = (at - rect.left_bottom()) / rect.size();
         Some([
-            (f64::from(share.x) * 3.0 - 1.0) * ends,
-            (f64::from(-share.y) * 3.0 - 1.0) * picks,
+            (side(f64::from(share.x)) * 3.0 - 1.0) * ends,
+            (side(f64::from(-share.y)) * 3.0 - 1.0) * picks,
         ])
     }
 }

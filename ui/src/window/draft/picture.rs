@@ -67,15 +67,7 @@ impl DraftPane {
             draw::crosshair(whole, grid, areas, hover);
         }
         // Over the crosshair, so that its number can be read.
-        draw::rulers(
-            whole,
-            grid,
-            areas,
-            design,
-            self.show.arrangement,
-            self.hover,
-            &palette,
-        );
+        draw::rulers(whole, grid, areas, design, self.hover, &palette);
         self.draw_focus(ui, areas, grid);
     }
 

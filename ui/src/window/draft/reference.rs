@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Color32, Painter, Pos2, Rect, RichText, Slider, TextureHandle, TextureOptions, pos2};
+use egui::{Color32, Painter, Rect, RichText, Slider, TextureHandle, TextureOptions};
 use pickglass::design::{Design, SourceImage};
 use pickglass::text::visible;
 
@@ -63,9 +63,9 @@ impl Reference {
         }
         let home = grid.rect(0, 0, design.ends().into(), design.picks().into());
         let place = self.place(home, design);
-        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        // It lies on the cloth, and turns with it.
         let tint = Color32::WHITE.gamma_multiply(self.opacity);
-        painter.image(self.texture.id(), place, whole, tint);
+        painter.image(self.texture.id(), place, grid.picture_uv(), tint);
     }
 
     /// Where it lies in the rectangle of the first repeat. Crossings need not be square:
@@ -119,6 +119,7 @@ impl Reference {
 mod tests {
     use super::*;
     use crate::window::session::blank;
+    use egui::pos2;
     use pickglass::design::Sett;
 
     #[test]

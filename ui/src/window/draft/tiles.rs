@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use egui::{Color32, ColorImage, Pos2, Rect, TextureHandle, TextureOptions, pos2};
+use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
 use pickglass::design::{Colouring, Design, SwatchWindow, WeavePattern, swatch};
 use pickglass::edit::{Change, Document, Touched};
 
@@ -201,7 +201,7 @@ impl Tiles {
                     tile.seen = self.frame;
                     let from = (column * side, row * side);
                     let place = grid.rect(from.0, from.1, side, side);
-                    painter.image(tile.texture.id(), place, whole(), Color32::WHITE);
+                    painter.image(tile.texture.id(), place, grid.picture_uv(), Color32::WHITE);
                 }
             }
         }
@@ -272,10 +272,6 @@ impl Tiles {
         self.tiles
             .retain(|_, tile| tile.seen >= oldest || tile.seen == frame);
     }
-}
-
-fn whole() -> Rect {
-    Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0))
 }
 
 /// A window of the cloth as an image.

@@ -8,7 +8,8 @@ use super::super::action::Button;
 /// Cells that an arrow key goes with Ctrl.
 const FAR: i64 = 8;
 
-/// A cell: column from the left and row from below, in the field's own numbers.
+/// A cell: column and row in the field's own numbers, those of its threads, shafts and
+/// treadles wherever they lie.
 pub type Cell = (i64, i64);
 
 /// What a person did in a field.
@@ -38,8 +39,8 @@ pub struct Field<'n> {
     pub name: &'n str,
     /// No stroke begins in it now.
     pub blocked: bool,
-    /// Its rows are numbered downwards.
-    pub rows_down: bool,
+    /// Which way an arrow to the right and one upwards go: +1 to higher numbers, or −1.
+    pub arrows: [i64; 2],
 }
 
 /// A field's own state.
@@ -102,7 +103,7 @@ impl Zone {
             key,
             name,
             blocked,
-            rows_down,
+            arrows,
         } = *field;
         let id = egui::Id::unique(("field", key));
         self.id = Some(id);
@@ -111,7 +112,7 @@ impl Zone {
         let mut touches = Vec::new();
         self.pointer(ui, &response, &to_cell, blocked, &mut touches);
         if response.has_focus() {
-            self.keys(ui, &response, rows_down, &mut touches);
+            self.keys(ui, &response, arrows, &mut touches);
         }
         (response, touches)
     }
@@ -189,7 +190,7 @@ impl Zone {
         &mut self,
         ui: &egui::Ui,
         response: &Response,
-        rows_down: bool,
+        [right, up]: [i64; 2],
         touches: &mut Vec<Touch>,
     ) {
         let filter = egui::EventFilter {
@@ -214,10 +215,9 @@ impl Zone {
                 else {
                     continue;
                 };
-                let up = if rows_down { -1 } else { 1 };
                 let arrow = match key {
-                    Key::ArrowLeft => Some((-1, 0)),
-                    Key::ArrowRight => Some((1, 0)),
+                    Key::ArrowLeft => Some((-right, 0)),
+                    Key::ArrowRight => Some((right, 0)),
                     Key::ArrowUp => Some((0, up)),
                     Key::ArrowDown => Some((0, -up)),
                     _ => None,

@@ -9,6 +9,7 @@ use pickglass::text::visible;
 use super::swatches;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::draft::picture_uv;
 use crate::window::{focus, typing};
 
 /// Side of a thumbnail, in pixels and points.
@@ -56,7 +57,13 @@ struct Thumbs {
 
 impl Colourways {
     /// Shows the list.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+    pub fn show(
+        &mut self,
+        ui: &mut egui::Ui,
+        document: &Document,
+        turned: bool,
+        actions: &mut Vec<Action>,
+    ) {
         let design = document.design();
         self.draw_thumbs(ui.ctx(), document);
         let add = ui.button("Duplicate the yarns in use");
@@ -82,7 +89,7 @@ impl Colourways {
                 for (place, (at, name, yarns)) in all.into_iter().enumerate() {
                     ui.vertical(|ui| {
                         ui.set_width(2.0 * THUMB as f32);
-                        self.one_ui(ui, document, (place, at, name, yarns), actions);
+                        self.one_ui(ui, document, (place, at, name, yarns), turned, actions);
                     });
                 }
             });
@@ -94,6 +101,7 @@ impl Colourways {
         ui: &mut egui::Ui,
         document: &Document,
         (place, at, name, yarns): (usize, Option<usize>, &str, &[Yarn]),
+        turned: bool,
         actions: &mut Vec<Action>,
     ) {
         let side = THUMB as f32;
@@ -109,9 +117,9 @@ impl Colourways {
             .as_ref()
             .and_then(|thumbs| thumbs.textures.get(place))
         {
-            let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+            let uv = picture_uv(turned);
             ui.painter()
-                .image(texture.id(), rect, whole, egui::Color32::WHITE);
+                .image(texture.id(), rect, uv, egui::Color32::WHITE);
         }
         let colour = if response.hovered() || at.is_none() {
             tokens::ACCENT

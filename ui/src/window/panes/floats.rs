@@ -7,10 +7,8 @@ use pickglass::design::{FaceFloat, longest_floats};
 use pickglass::edit::Document;
 
 use super::later::Later;
-use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Mark};
-use crate::window::draft::end_number;
 use crate::window::typing;
 
 /// Floats that are listed.
@@ -60,13 +58,7 @@ impl Floats {
     }
 
     /// Shows the list.
-    pub fn show(
-        &mut self,
-        ui: &mut egui::Ui,
-        document: &Document,
-        arrangement: DraftLayout,
-        actions: &mut Vec<Action>,
-    ) {
+    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
         let quiet = Palette::current(ui).quiet;
         let design = document.design();
         // An end floats over picks, a pick over ends.
@@ -106,13 +98,12 @@ impl Floats {
         let floats = if found.all == 1 { "float" } else { "floats" };
         let told = format!("{} long {floats}{more}{working}", found.all);
         ui.label(RichText::new(told).color(quiet));
-        let number = |end| end_number(end, i64::from(design.ends()), arrangement);
         let row = ui.spacing().interact_size.y;
         ScrollArea::vertical()
             .auto_shrink(false)
             .show_rows(ui, row, listed, |ui, rows| {
                 for float in &found.floats[rows] {
-                    float_ui(ui, float, number(float.end), pitch, actions);
+                    float_ui(ui, float, pitch, actions);
                 }
             });
     }
@@ -147,14 +138,9 @@ impl Floats {
     }
 }
 
-/// One float; `end` is the number of its first end.
-fn float_ui(
-    ui: &mut egui::Ui,
-    float: &FaceFloat,
-    end: i64,
-    pitch: [f32; 2],
-    actions: &mut Vec<Action>,
-) {
+/// One float, from its first end and pick.
+fn float_ui(ui: &mut egui::Ui, float: &FaceFloat, pitch: [f32; 2], actions: &mut Vec<Action>) {
+    let end = float.end + 1;
     let (what, thread, mm) = if float.warp {
         ("End", end, float.length as f32 * pitch[0])
     } else {

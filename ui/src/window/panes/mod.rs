@@ -26,7 +26,6 @@ use pickglass::edit::Document;
 use serde::{Deserialize, Serialize};
 
 use super::action::Action;
-use crate::command_table::DraftLayout;
 use colourways::Colourways;
 use floats::Floats;
 use history::History;
@@ -86,8 +85,8 @@ impl Pane {
 /// The state of the panes below the views.
 #[derive(Default)]
 pub struct Panes {
-    /// How ends are counted, as on the draft.
-    pub arrangement: DraftLayout,
+    /// The cloth is turned by 180°, as on the draft.
+    pub turned: bool,
     pub log: Log,
     pub section: Section,
     floats: Floats,
@@ -134,14 +133,14 @@ impl Panes {
         match pane {
             Pane::Log => self.log.show(ui, document, actions),
             Pane::Floats => {
-                self.floats.show(ui, document, self.arrangement, actions);
+                self.floats.show(ui, document, actions);
             }
             Pane::Yarns => self.yarns.show(ui, document, actions),
-            Pane::Colourways => self.colourways.show(ui, document, actions),
+            Pane::Colourways => self.colourways.show(ui, document, self.turned, actions),
             Pane::Sett => self.sett.show(ui, document, actions),
             Pane::Posterise => self.posterise.show(ui, document, actions),
             Pane::Section => {
-                self.section.show(ui, document, self.arrangement, actions);
+                self.section.show(ui, document, actions);
             }
             Pane::History => self.history.show(ui, document, actions),
             // Views of their own.

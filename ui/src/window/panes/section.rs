@@ -6,7 +6,6 @@ use pickglass::edit::Document;
 use pickglass::text::visible;
 use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
 
-use crate::command_table::DraftLayout;
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::typing;
@@ -53,30 +52,7 @@ impl Section {
     }
 
     /// Shows the cut.
-    pub fn show(
-        &mut self,
-        ui: &mut egui::Ui,
-        document: &Document,
-        arrangement: DraftLayout,
-        _actions: &mut Vec<Action>,
-    ) {
-        let ends = i64::from(document.design().ends());
-        // Ends are counted as the draft counts them; each way is its own inverse.
-        let from_right = !self.along_pick && arrangement == DraftLayout::Us;
-        let counted = |thread: i64| {
-            if from_right {
-                ends - thread
-            } else {
-                thread + 1
-            }
-        };
-        let thread_of = |number: i64| {
-            if from_right {
-                ends - number
-            } else {
-                number - 1
-            }
-        };
+    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, _actions: &mut Vec<Action>) {
         let quiet = Palette::current(ui).quiet;
         ui.horizontal_wrapped(|ui| {
             ui.radio_value(&mut self.along_pick, true, "Along a pick");
@@ -86,13 +62,13 @@ impl Section {
             } else {
                 &mut self.at.0
             };
-            let mut number = counted(*thread);
+            let mut number = *thread + 1;
             let label = ui.label("number");
             if typing::number(ui, egui::DragValue::new(&mut number))
                 .labelled_by(label.id)
                 .changed()
             {
-                *thread = thread_of(number);
+                *thread = number - 1;
                 self.follows = false;
             }
             ui.checkbox(&mut self.follows, "follow the pointer");
@@ -122,7 +98,7 @@ impl Section {
                     true => self.at.1,
                     false => self.at.0,
                 };
-                draw(ui, document, cut, self.along_pick, counted(thread));
+                draw(ui, document, cut, self.along_pick, thread + 1);
             }
             _ => {
                 ui.label(RichText::new("There is no cloth here.").color(quiet));

@@ -7,7 +7,6 @@ use pickglass::edit::{Document, Edit};
 use pickglass::formats::presets;
 
 use super::{Pane, Panes};
-use crate::command_table::DraftLayout;
 use crate::window::action::{Action, Mark};
 
 /// A document with its panes, and what they asked for so far.
@@ -235,15 +234,6 @@ fn the_cut_follows_the_pointer() {
             .is_some()
     );
     harness.get_by_label("Along an end").click();
-    harness.run_steps(2);
-    assert!(
-        harness
-            .query_all_by_label_contains("Cut along end 20")
-            .next()
-            .is_some(),
-        "from the right of 24, as on the draft"
-    );
-    harness.state_mut().panes.arrangement = DraftLayout::Scandinavian;
     harness.run_steps(2);
     assert!(
         harness

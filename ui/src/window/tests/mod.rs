@@ -16,6 +16,7 @@ mod pictures;
 mod slow_frames;
 mod states;
 mod times;
+mod turned;
 mod viewing;
 
 pub use pictures::renderer;
