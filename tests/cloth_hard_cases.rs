@@ -5,7 +5,7 @@ mod cloth_scenes;
 
 use cloth_scenes::{at_level, cotton, two_yarns, weave, weave_from, woven};
 use glam::Vec3;
-use pickglass::cloth::{ClothVolume, YarnClasses};
+use pickglass::cloth::ClothVolume;
 use pickglass::design::{
     Design, Family, Sett, WeavePattern, Yarn, YarnId, YarnMaps, weave as notation,
 };
@@ -126,9 +126,9 @@ fn setts_from_fishing_net_to_membrane() {
 #[test]
 fn a_spacing_that_cannot_be_woven_is_an_error() {
     for per_cm in [0.3, 2000.0] {
-        let classes = YarnClasses::new(&of_size(0.2, Sett::per_cm(per_cm, 30.0)));
-        let grid = ClothVolume::grid_for(&Catalogue::paper(), &classes, &at_level(3));
-        let message = grid.unwrap_err().to_string();
+        let base = cotton(notation("2/2 twill").unwrap());
+        let message = base.with_sett(Sett::per_cm(per_cm, 30.0)).unwrap_err();
+        let message = message.to_string();
         assert!(message.contains("cannot be woven"), "{message}");
     }
 }

@@ -86,9 +86,12 @@ fn fate(path: &Path) -> (Fate, String) {
 /// What the collection's notes say of a file, where they say something.
 fn noted(file: &str) -> Option<&'static [Fate]> {
     const READ: &[Fate] = &[Fate::Read, Fate::Warned];
-    const NOTES: [(&str, &[Fate]); 14] = [
+    const NOTES: [(&str, &[Fate]); 16] = [
         // Notes pasted into it: no WIF.
         ("liftplan and zeros.wpo.wif", &[Fate::Refused]),
+        // Colours that are not there have stand-ins.
+        ("color_table", &[Fate::Warned]),
+        ("color too", &[Fate::Warned]),
         ("/bad_", &[Fate::Refused]),
         ("/warn_", &[Fate::Warned]),
         ("liftplan with defaults.wif", &[Fate::Warned]),

@@ -391,7 +391,10 @@ fn regions_follow_colour_and_not_the_palette_order() {
         ..ImageReading::default()
     };
     let error = load(&colours, reading).unwrap_err().to_string();
-    assert!(error.contains("--key rgb"), "{error}");
+    assert!(
+        error.contains("tell its parts apart by their colour"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -60,13 +60,20 @@ fn every_draft_is_read_warned_about_or_refused_as_its_folder_says() {
     let (mut good, mut bad, mut warned) = (0, 0, 0);
     for path in wifs(&folder) {
         let shown = path.display();
-        let refused = path.to_string_lossy().contains("bad_wif") || path.ends_with(PASTED);
+        let bad_wif = path.to_string_lossy().contains("bad_wif");
+        let stood_in = bad_wif && shown.to_string().contains("color");
+        let refused = (bad_wif && !stood_in) || path.ends_with(PASTED);
         match read(&path) {
             Ok(_) if refused => panic!("{shown} must be refused"),
             Err(error) if !refused => panic!("{shown}: {error}"),
             Ok(imported) => {
                 good += 1;
                 println!("{shown}: {:#?}", imported.warnings);
+                let stand_ins = imported.warnings.iter();
+                let told = stand_ins
+                    .filter(|line| line.contains("taken instead"))
+                    .count();
+                assert_eq!(told, usize::from(stood_in), "{shown}");
                 if path.to_string_lossy().contains("warn_wif") {
                     warned += 1;
                     let about = |line: &String| line.contains("default colour");
@@ -84,7 +91,7 @@ fn every_draft_is_read_warned_about_or_refused_as_its_folder_says() {
         }
     }
     assert!(
-        good >= 25 && bad >= 15 && warned == 4,
+        good >= 35 && bad >= 5 && warned == 4,
         "{good} {bad} {warned}"
     );
 }
@@ -94,13 +101,7 @@ fn refusals_name_the_line() {
     let Some(folder) = drafts() else { return };
     let bad = folder.join("dtx_to_wif/bad_wif");
     let line = |name: &str| read(&bad.join(name)).unwrap_err().line;
-    for name in [
-        "warp_color too big.wif",
-        "weft_color too small.wif",
-        "too many treadles in treadline.wif",
-        "default warp color too big.wif",
-        "missing_color_table_weft.wif",
-    ] {
+    for name in ["too many treadles in treadline.wif"] {
         assert!(line(name).is_some(), "{name}");
     }
 }
@@ -196,7 +197,14 @@ fn a_draft_survives_design_and_back() {
         assert_eq!(before.origin.picks, after.origin.picks);
         assert_eq!(before.origin.palette, after.origin.palette);
         assert_eq!(before.notes, after.notes);
-        assert_eq!(before.yarns().len(), after.yarns().len());
+        // A stand-in is a yarn like another: one colour of the table holds both.
+        if !first
+            .warnings
+            .iter()
+            .any(|line| line.contains("taken instead"))
+        {
+            assert_eq!(before.yarns().len(), after.yarns().len());
+        }
         // And the text itself does not change any more.
         assert_eq!(wif::write(after).unwrap().text, written.text);
     }

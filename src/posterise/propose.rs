@@ -90,13 +90,15 @@ fn pair_in(settings: &PosteriseSettings, [warp, weft]: [Srgb; 2]) -> Pair {
     }
 }
 
-/// The colours that most of a half of the picture has, scaled in light, and `usual` ones.
+/// The colours that most of a half of the picture has, as they are and scaled in light, and
+/// `usual` ones.
 fn candidates(half: &[(Srgb, f64)], scales: [f32; 3], usual: &[Srgb]) -> Vec<Srgb> {
     let mut most = half.to_vec();
     most.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     let mut found = usual.to_vec();
     for (colour, _) in most.into_iter().take(TRIED) {
         let light = colour.to_linear();
+        found.push(colour);
         found.extend(scales.map(|scale| {
             // Lighter yarns keep their hue: no channel is cut off.
             let most = 0.8 / light.max_element().max(1e-6);

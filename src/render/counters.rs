@@ -44,10 +44,16 @@ impl Counters {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.capped_walks > 0 {
+            let what = if self.capped_walks > self.paths / 1000 {
+                ": the extinction is too large somewhere; give it in 1/mm"
+            } else {
+                ", too few to be seen"
+            };
             warnings.push(format!(
-                "{} walks of light were given up after {} steps and count as absorbed: the \
-                 extinction is too large somewhere; give it in 1/mm",
+                "{} walks of light on {} paths were given up after {} steps and count as \
+                 absorbed{what}",
                 self.capped_walks,
+                self.paths,
                 super::track::STEP_CAP
             ));
         }

@@ -258,10 +258,22 @@ pub fn render(
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<Still, StillError> {
+    let lights = lights(&request.light, request.view, request.turned)?;
+    render_lit(prepared, request, lights, job, on_pass)
+}
+
+/// As [`render()`], in a light that was read before.
+fn render_lit(
+    prepared: &PreparedCloth,
+    request: &StillRequest,
+    lights: LightRig,
+    job: &Job,
+    on_pass: &mut dyn FnMut(&Pass<'_>),
+) -> Result<Still, StillError> {
     let (_, settings, _) = settings(request)?;
     let shot = Shot {
         camera: camera(&prepared.design, request)?,
-        lights: lights(&request.light, request.view, request.turned)?,
+        lights,
         settings,
         request,
     };
@@ -434,8 +446,10 @@ pub fn render_still(
 ) -> Result<Still, StillError> {
     ask_for_picture(request.width, request.height)?;
     let job = &finishing::bounded(request, job);
+    // What is wrong with the light is said before anything takes long.
+    let lights = lights(&request.light, request.view, request.turned)?;
     let cloth = prepare(design, request, &ExemplarStore::user(), job)?;
-    render(&cloth, request, job, on_pass)
+    render_lit(&cloth, request, lights, job, on_pass)
 }
 
 fn known(error: f64) -> Option<f64> {

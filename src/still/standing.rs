@@ -22,9 +22,9 @@ use crate::render::{Film, luminance};
 const LEFT_BY_DENOISER: [f32; 3] = [0.25, 0.4, 0.7];
 /// Noise counts for more than was measured of it, so that chance passes for a difference
 /// less often.
-const DOUBT: f32 = 1.2;
+const DOUBT: f32 = 1.6;
 /// Pixels of an octave to each side within which differences are compared.
-const NEIGHBOURHOOD: usize = 4;
+const NEIGHBOURHOOD: usize = 8;
 /// An octave with no more pixels than this along a side is the last.
 const SMALLEST: usize = 4;
 /// Light below which differences count absolutely, 1 = a white diffuser.

@@ -34,10 +34,12 @@ fn case_17_memory_is_asked_for_before_an_environment_is_read() {
             "herringbone",
             "-o",
             "o.png",
+            "--size",
+            "24x16",
             "--light",
             "large.exr",
         ])
-        .env("PICKGLASS_MEMORY", "120M")
+        .env("PICKGLASS_MEMORY", "70M")
         .output()
         .expect("the program starts");
     let message = crate::program::Said::of(said).refused();

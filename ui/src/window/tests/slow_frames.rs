@@ -5,7 +5,8 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::{Window, build, builder, says, shows};
-use crate::command_table::Tool;
+use crate::command_table::{Command, Tool};
+use crate::window::Pane;
 
 fn slow_window(design: &str) -> Window {
     let builder = builder().with_size([1280.0, 1200.0]).with_step_dt(1.0);
@@ -171,8 +172,9 @@ fn case_12_after_enter_on_an_error_all_keys_of_the_frame_go_to_the_field() {
 #[test]
 fn case_12_what_was_typed_into_a_field_that_esc_gave_up_is_no_command() {
     let mut window = slow_window("oxford");
-    window.get_by_label("Yarns").click();
-    window.run_steps(3);
+    let ctx = window.ctx.clone();
+    window.state_mut().obey(&ctx, Command::Show(Pane::Yarns));
+    window.run_steps(6);
     let stripes = egui::accesskit::Role::TextInput;
     window
         .get_by_role_and_label(stripes, "Warp stripes")
