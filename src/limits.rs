@@ -1,7 +1,7 @@
 //! Limits of the numbers that people and files give.
 //!
 //! Parsers, dialogs, readers and messages take them from here, so that what one door lets
-//! in no other refuses; README lists [`TABLE`].
+//! in no other refuses; README lists [`table`].
 
 use std::ops::RangeInclusive;
 

@@ -89,7 +89,7 @@ pub fn write(
     }
 }
 
-/// The files that [`write`] makes.
+/// The files that [`write()`] makes.
 pub fn files(path: &Path) -> Vec<PathBuf> {
     let beside = matches!(ending(path), Some(Ending::Obj)).then(|| materials(path));
     std::iter::once(path.to_owned()).chain(beside).collect()
