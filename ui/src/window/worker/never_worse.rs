@@ -8,7 +8,7 @@ use glam::Vec3;
 use pickglass::design::{delta_e_00, lab};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::still::{SightTables, StillRequest, Stop, prepare_woven};
+use pickglass::still::{PreparedCloth, SightTables, StillRequest, Stop, prepare_woven};
 
 use super::drawing::{Drawing, OnScreen};
 use super::{Aim, Desk, Fibres, Picture, PreviewRequest, Quality, Shared};
@@ -77,6 +77,9 @@ fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
     }
 }
 
+/// Designs that are also looked at from elsewhere and edited.
+const FOLLOWED: usize = 3;
+
 /// Steps of one request: level of voxels, halvings of the size, samples a pixel.
 const STEPS: [(&str, u32, u32); 5] = [
     ("3", 3, 8),
@@ -86,16 +89,43 @@ const STEPS: [(&str, u32, u32); 5] = [
     ("0", 0, 4),
 ];
 
-/// What is shown of a view, and the films alone, as they were shown before: whatever was
-/// traced replaced what stood there.
+/// What is shown of a view, and what was shown before: whatever was traced replaced what
+/// stood there, from a quarter of a path a pixel on.
 struct Watched {
     shown: Vec<f64>,
-    films_alone: Vec<f64>,
+    replaced: Vec<f64>,
+}
+
+/// How far each pass of a film is off, enlarged to the size of the picture.
+fn films(
+    cloth: &PreparedCloth,
+    still: &StillRequest,
+    (level, spp): (u32, u32),
+    reference: &[Vec3],
+) -> Vec<f64> {
+    let mut still = still.clone();
+    (still.width, still.height) = (still.width >> level, still.height >> level);
+    still.stop.spp = Some(spp);
+    let mut films = Vec::new();
+    pickglass::still::render(cloth, &still, &Job::new(), &mut |pass| {
+        let rgba = pass.rgba();
+        let pixel = |at: usize| {
+            let (x, y) = (
+                (at % SIZE[0] as usize) >> level,
+                (at / SIZE[0] as usize) >> level,
+            );
+            let from = (y * pass.width as usize + x) * 4;
+            [0, 1, 2, 3].map(|channel| f32::from(rgba[from + channel]) / 255.0)
+        };
+        let pixels: Vec<[f32; 4]> = (0..(SIZE[0] * SIZE[1]) as usize).map(pixel).collect();
+        films.push(off(&squares(SIZE[0] as usize, &pixels), reference));
+    })
+    .expect("a picture");
+    films
 }
 
 fn watch(
     view: &PreviewView,
-    steps: &[(&str, u32, u32)],
     tables: &Arc<SightTables>,
     screen: &mut Option<OnScreen>,
 ) -> Option<Watched> {
@@ -111,8 +141,8 @@ fn watch(
         patience: 0,
     };
     drawing.first_sight(tables, screen).expect("first sight");
-    let mut films_alone = Vec::new();
-    for &(voxels, level, spp) in steps {
+    let mut replaced = Vec::new();
+    for voxels in ["3", "0"] {
         let mut still = request.still.clone();
         still.dials.push(("level".to_owned(), voxels.to_owned()));
         let cloth = prepare_woven(&view.design, &view.drawdown, &still, &desk.store, &job);
@@ -123,32 +153,26 @@ fn watch(
                 light_error: cloth.cloth().light_error(),
             },
         };
-        let stop = Stop {
-            spp: Some(spp),
-            ..Stop::default()
-        };
-        drawing
-            .trace(&cloth, fibres, level, stop, screen)
-            .expect("traced");
-        if level == 0 {
-            let mut one = still.clone();
-            one.stop.spp = Some(2);
-            pickglass::still::render(&cloth, &one, &job, &mut |pass| {
-                let rgba = pass.rgba();
-                let pixels: Vec<[f32; 4]> = (rgba.chunks_exact(4))
-                    .map(|p| [p[0], p[1], p[2], p[3]].map(|byte| f32::from(byte) / 255.0))
-                    .collect();
-                films_alone.push(off(&squares(SIZE[0] as usize, &pixels), &reference));
-            })
-            .expect("a picture");
+        for (_, level, spp) in STEPS.into_iter().filter(|step| step.0 == voxels) {
+            let stop = Stop {
+                spp: Some(spp),
+                ..Stop::default()
+            };
+            drawing
+                .trace(&cloth, fibres, level, stop, screen)
+                .expect("traced");
+        }
+        if voxels == "0" {
+            replaced = films(&cloth, &still, (1, 1), &reference);
+            replaced.extend(films(&cloth, &still, (0, 2), &reference));
         }
     }
     let seen = seen.lock().expect("seen");
-    let shown = seen
-        .iter()
+    let shown: Vec<f64> = (seen.iter())
         .map(|picture| off(&squares_of(picture), &reference))
         .collect();
-    Some(Watched { shown, films_alone })
+    replaced.insert(0, shown[0]);
+    Some(Watched { shown, replaced })
 }
 
 /// Where a row of pictures gets worse: its place, and the least before.
@@ -165,22 +189,32 @@ fn worse(shown: &[f64]) -> Option<(usize, f64, f64)> {
 
 #[test]
 fn no_picture_that_is_shown_is_worse_than_one_before() {
+    // Behind the other tests, some of which wait for threads of this niceness.
+    super::threads::behind(watch_all);
+}
+
+fn watch_all() {
+    let soak = std::env::var_os("PICKGLASS_SOAK").is_some();
     let (mut watched, mut control) = (0, 0);
     let mut faults = Vec::new();
-    for visit in visits() {
+    for (number, visit) in visits().into_iter().enumerate() {
         let tables: Arc<SightTables> = Arc::default();
         let mut screen = None;
-        for view in [&visit.open, &visit.zoom, &visit.edit] {
-            let Some(row) = watch(view, &STEPS, &tables, &mut screen) else {
+        let views = [&visit.open, &visit.zoom, &visit.edit];
+        // The rest takes long.
+        let looked_at = if soak || number < FOLLOWED { 3 } else { 1 };
+        for view in views.into_iter().take(looked_at) {
+            let Some(row) = watch(view, &tables, &mut screen) else {
                 continue;
             };
             watched += 1;
-            let text: Vec<String> = row.shown.iter().map(|off| format!("{off:.1}")).collect();
+            let text =
+                |row: &[f64]| -> String { row.iter().map(|off| format!("{off:.1} ")).collect() };
             println!(
-                "{:24} {} | films {:.1?}",
+                "{:24} {}| replaced: {}",
                 view.name,
-                text.join(" "),
-                row.films_alone
+                text(&row.shown),
+                text(&row.replaced)
             );
             if let Some((at, off, least)) = worse(&row.shown) {
                 faults.push(format!(
@@ -188,13 +222,7 @@ fn no_picture_that_is_shown_is_worse_than_one_before() {
                     view.name
                 ));
             }
-            // Today's rule was: whatever is traced replaces first sight.
-            let replaced: Vec<f64> = row.shown[..1]
-                .iter()
-                .chain(&row.films_alone)
-                .copied()
-                .collect();
-            control += usize::from(worse(&replaced).is_some());
+            control += usize::from(worse(&row.replaced).is_some());
         }
     }
     assert!(
@@ -204,7 +232,7 @@ fn no_picture_that_is_shown_is_worse_than_one_before() {
     assert!(faults.is_empty(), "{faults:#?}");
     assert!(
         control > 0,
-        "the control: films alone are never worse, so nothing was shown"
+        "the control: what is traced may replace first sight at once, and is never worse"
     );
 }
 
