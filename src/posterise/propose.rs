@@ -74,9 +74,6 @@ impl Yarns {
     }
 }
 
-/// What the root mean square of the differences counts for beside their mean.
-const OF_SQUARES: f64 = 0.25;
-
 /// A yarn as thick as the sett calls for.
 fn yarn(name: &str, settings: &PosteriseSettings, colour: Srgb, pitch_mm: f32) -> Yarn {
     Yarn {
@@ -170,8 +167,8 @@ impl Wanted {
         chosen.into_iter().map(|level| order[level]).collect()
     }
 
-    /// Mean of ΔE₀₀ over the cloth, and some of its root mean square: a pair that is better
-    /// in both is never passed over, and none buys a small mean with one colour far off.
+    /// Mean and root mean square of ΔE₀₀ over the cloth, added: a pair that is better in
+    /// both is never passed over, and none buys a small mean with one colour far off.
     fn off(&self, series: &[Fill], pair: &Pair) -> f64 {
         let shown = shown(series, pair);
         let (mut mean, mut squares, mut all) = (0.0, 0.0, 0.0);
@@ -182,7 +179,7 @@ impl Wanted {
             squares += share * off * off;
             all += share;
         }
-        (mean + OF_SQUARES * (squares * all).sqrt()) / f64::max(all, 1e-12)
+        (mean + (squares * all).sqrt()) / f64::max(all, 1e-12)
     }
 }
 
@@ -346,7 +343,7 @@ mod tests {
                 [dark, WHITE],
             ] {
                 let simple = off(asked, &coverage, &pair_in(&settings, colours));
-                let sum = |both: [f64; 2]| both[0] + OF_SQUARES * both[1];
+                let sum = |both: [f64; 2]| both[0] + both[1];
                 assert!(
                     sum(found) <= sum(simple) + 1e-9,
                     "{found:?} {simple:?} {colours:?}"

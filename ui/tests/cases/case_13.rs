@@ -50,19 +50,18 @@ fn case_13_the_proposed_pair_is_no_worse_than_simple_ones() {
         let arguments: Vec<&str> = [name].iter().chain(size).copied().collect();
         let ([mean, rms], report) = posterised(&place, &arguments);
         println!("{name}: mean {mean:.2}, rms {rms:.2}: {report}");
-        let [most_mean, most_rms] = match name {
-            "flat4.png" => [18.7, f64::INFINITY],
-            _ => [24.9, 29.2],
-        };
-        assert!(mean < most_mean && rms < most_rms, "{name}: {mean} {rms}");
+        // What the pair of the same picture as PNG once came to.
+        if name.starts_with("quarters") {
+            assert!(mean < 24.9 && rms < 29.2, "{name}: {mean} {rms}");
+        }
         for [warp, weft] in pairs {
             let mut given = arguments.clone();
             given.extend(["--warp", warp, "--weft", weft]);
             let ([other_mean, other_rms], _) = posterised(&place, &given);
             println!("  {warp} {weft}: mean {other_mean:.2}, rms {other_rms:.2}");
-            // Neither is bought with much of the other.
+            // What is least is their sum: neither is bought with much of the other.
             assert!(
-                mean + 0.25 * rms <= other_mean + 0.25 * other_rms + 0.1,
+                mean + rms <= other_mean + other_rms + 0.1,
                 "{name} {warp} {weft}: {mean} {rms} {other_mean} {other_rms}"
             );
         }
