@@ -9,8 +9,8 @@
 //! error, and none where all of it may be noise. So colours of large places, which are known
 //! after few paths, come true first, and fibres fade in as the film gets to know them.
 //!
-//! The same rule puts back what the denoiser took from large places with the noise, and a
-//! film of a fraction of the size is one without the finest octaves.
+//! The denoiser is asked about the finest octaves alone, and a film of a fraction of the
+//! size, whose pixels are large places themselves, is one without the finest octaves.
 
 use glam::{Vec3, Vec4};
 
@@ -18,8 +18,9 @@ use super::planes::Plane;
 use crate::render::tone::{curve, decode_srgb, encode_srgb, uncurve};
 use crate::render::{Film, luminance};
 
-/// Variance that the denoiser leaves of the noise, in octaves from the pixel up.
-const LEFT_BY_DENOISER: [f32; 3] = [0.25, 0.4, 0.7];
+/// Variance that the denoiser leaves of the noise, in octaves from the pixel up. Of larger
+/// places it is not believed: with the noise it takes what is there.
+const LEFT_BY_DENOISER: [f32; 2] = [0.25, 0.4];
 /// Noise counts for more than was measured of it, so that chance passes for a difference
 /// less often.
 const DOUBT: f32 = 1.6;
@@ -118,15 +119,15 @@ impl Standing {
         let (width, height) = (stands.width, stands.height);
         let traced = traced.resized(width, height);
         let noise = Noise::new(&noise.resized(width, height), &stands, &traced);
-        let best = match clean {
+        let best = match clean.filter(|_| level == 0) {
             Some(clean) => {
                 let clean = of(clean)?.resized(width, height);
-                let lost = wiener(&traced.minus(&clean), &noise, &[]);
-                clean.plus(&lost)
+                let octaves = LEFT_BY_DENOISER.len() as u32;
+                clean.plus(&large_places(&traced.minus(&clean), octaves))
             }
             None => traced,
         };
-        let left: &[f32] = if clean.is_some() {
+        let left: &[f32] = if clean.is_some() && level == 0 {
             &LEFT_BY_DENOISER
         } else {
             &[]

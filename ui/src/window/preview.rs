@@ -222,7 +222,7 @@ impl Preview {
             self.glass.take(ctx, picture);
         }
         if let Some(error) = self.worker.take_failure() {
-            failed(error, "The coarse cloth is still shown.");
+            failed(error, "The last picture is still shown.");
         }
         if let Phase::Failed(error) = self.worker.phase()
             && self.reported_failure.as_ref() != Some(&error)

@@ -1,7 +1,7 @@
 //! Which cloth is drawn: the full one as soon as there is one, until then a coarse one.
 //!
 //! Both follow edits and make anew only what an edit touches. Where the full cloth needs
-//! exemplars that are not there, the coarse one steps in, a thread of its own builds them
+//! exemplars that are not there, first sight or, of a slanting view, the coarse one steps in, a thread of its own builds them
 //! and the last request is drawn again. A build goes on through edits that need the same
 //! exemplars.
 //!
@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 use pickglass::cloth::YarnClasses;
 use pickglass::job::Job;
-use pickglass::still::{self, Followed, PreparedCloth, StillError, UnfinishedCloth};
+use pickglass::render::View;
+use pickglass::still::{self, Followed, PreparedCloth, StillError, StillRequest, UnfinishedCloth};
 
 use super::{Building, Desk, Fibres, Phase, PreviewRequest};
 
@@ -47,25 +48,32 @@ enum Wanted {
     All,
 }
 
-/// The best cloth at hand for a request, and what it is of.
+/// Whether first sight shows what a picture is of better than coarse voxels do: these
+/// blur yarns into each other. First sight knows nothing of the slant of a view.
+fn first_sight_serves(still: &StillRequest) -> bool {
+    still.eye.is_none() && matches!(still.view, View::Face | View::Back)
+}
+
+/// The best cloth at hand for a request, and what it is of; `None` where first sight serves
+/// until the full one is built.
 pub(super) fn cloth_of(
     desk: &Arc<Desk>,
     request: &PreviewRequest,
     job: &Job,
     coarse: &mut Option<Kept>,
-) -> Result<(Arc<PreparedCloth>, Fibres), StillError> {
+) -> Result<Option<(Arc<PreparedCloth>, Fibres)>, StillError> {
     still::check_view(&request.design, &request.still)?;
     let full = desk.lock().full.clone();
     let wanted = match full {
         Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&request.still) => {
-            return Ok((cloth, Fibres::Full));
+            return Ok(Some((cloth, Fibres::Full)));
         }
         Some((made_for, cloth)) if made_for.same_dials(request) => {
             match cloth.follow(&request.design, &request.drawdown, &request.still, job)? {
                 Some(Followed::Ready(cloth)) => {
                     let cloth = Arc::new(cloth);
                     desk.lock().full = Some((request.clone(), Arc::clone(&cloth)));
-                    return Ok((cloth, Fibres::Full));
+                    return Ok(Some((cloth, Fibres::Full)));
                 }
                 Some(Followed::Unfinished(cloth)) => Wanted::Exemplars(Box::new(cloth)),
                 None => Wanted::All,
@@ -74,9 +82,12 @@ pub(super) fn cloth_of(
         _ => Wanted::All,
     };
     build(desk, request, wanted);
+    if first_sight_serves(&request.still) && desk.lock().builder.is_some() {
+        return Ok(None);
+    }
     let cloth = coarse_cloth(desk, request, job, coarse)?;
     let light_error = cloth.cloth().light_error();
-    Ok((cloth, Fibres::Coarse { light_error }))
+    Ok(Some((cloth, Fibres::Coarse { light_error })))
 }
 
 fn coarse_cloth(

@@ -200,7 +200,11 @@ impl Drawing<'_> {
             }
             let showing = Instant::now();
             let improved = stands.as_ref().zip(pass.film()).and_then(|(stands, film)| {
-                let clean = pass.clean(self.job);
+                let clean = if level == 0 {
+                    pass.clean(self.job)
+                } else {
+                    None
+                };
                 stands.improved(film, clean.as_deref(), exposure)
             });
             if let Some(improved) = improved {

@@ -142,6 +142,8 @@ pub enum Done {
     Good,
     /// It was refined as long as any is.
     Long,
+    /// First sight stands until the exemplars are built.
+    Waiting,
 }
 
 /// What the worker is at.
@@ -461,7 +463,9 @@ fn serve(
     };
     drawing.first_sight(tables, screen)?;
     lower_shield(desk)?;
-    let (cloth, fibres) = cloth_of(desk, request, job, coarse)?;
+    let Some((cloth, fibres)) = cloth_of(desk, request, job, coarse)? else {
+        return Ok(Done::Waiting);
+    };
     desk.set_phase(Phase::Refining);
     let mut refine = || {
         let seconds = |seconds: f64| Stop {

@@ -78,16 +78,10 @@ fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
 }
 
 /// Designs that are also looked at from elsewhere and edited.
-const FOLLOWED: usize = 3;
+const FOLLOWED: usize = 1;
 
-/// Steps of one request: level of voxels, halvings of the size, samples a pixel.
-const STEPS: [(&str, u32, u32); 5] = [
-    ("3", 3, 8),
-    ("3", 2, 8),
-    ("0", 2, 8),
-    ("0", 1, 4),
-    ("0", 0, 4),
-];
+/// Steps of one request: halvings of the size, samples a pixel.
+const STEPS: [(u32, u32); 3] = [(2, 8), (1, 4), (0, 4)];
 
 /// What is shown of a view, and what was shown before: whatever was traced replaced what
 /// stood there, from a quarter of a path a pixel on.
@@ -141,32 +135,20 @@ fn watch(
         patience: 0,
     };
     drawing.first_sight(tables, screen).expect("first sight");
-    let mut replaced = Vec::new();
-    for voxels in ["3", "0"] {
-        let mut still = request.still.clone();
-        still.dials.push(("level".to_owned(), voxels.to_owned()));
-        let cloth = prepare_woven(&view.design, &view.drawdown, &still, &desk.store, &job);
-        let cloth = cloth.expect("a cloth");
-        let fibres = match voxels {
-            "0" => Fibres::Full,
-            _ => Fibres::Coarse {
-                light_error: cloth.cloth().light_error(),
-            },
+    let still = &request.still;
+    let cloth = prepare_woven(&view.design, &view.drawdown, still, &desk.store, &job);
+    let cloth = cloth.expect("a cloth");
+    for (level, spp) in STEPS {
+        let stop = Stop {
+            spp: Some(spp),
+            ..Stop::default()
         };
-        for (_, level, spp) in STEPS.into_iter().filter(|step| step.0 == voxels) {
-            let stop = Stop {
-                spp: Some(spp),
-                ..Stop::default()
-            };
-            drawing
-                .trace(&cloth, fibres, level, stop, screen)
-                .expect("traced");
-        }
-        if voxels == "0" {
-            replaced = films(&cloth, &still, (1, 1), &reference);
-            replaced.extend(films(&cloth, &still, (0, 2), &reference));
-        }
+        drawing
+            .trace(&cloth, Fibres::Full, level, stop, screen)
+            .expect("traced");
     }
+    let mut replaced = films(&cloth, still, (1, 1), &reference);
+    replaced.extend(films(&cloth, still, (0, 2), &reference));
     let seen = seen.lock().expect("seen");
     let shown: Vec<f64> = (seen.iter())
         .map(|picture| off(&squares_of(picture), &reference))
