@@ -50,7 +50,7 @@ enum Wanted {
 
 /// Whether first sight shows what a picture is of better than coarse voxels do: these
 /// blur yarns into each other. First sight knows nothing of the slant of a view.
-fn first_sight_serves(still: &StillRequest) -> bool {
+pub(super) fn first_sight_serves(still: &StillRequest) -> bool {
     still.eye.is_none() && matches!(still.view, View::Face | View::Back)
 }
 

@@ -23,7 +23,7 @@ use pickglass::exemplar::ExemplarStore;
 use pickglass::job::{Cancelled, Job};
 use pickglass::still::{SightTables, StillError, StillRequest, Stop};
 
-use cloths::{Builder, Kept, cloth_of};
+use cloths::{Builder, Kept, cloth_of, first_sight_serves};
 use drawing::{Drawing, OnScreen, PATIENCE};
 
 /// What a picture is for.
@@ -472,7 +472,13 @@ fn serve(
             seconds: Some(seconds.max(0.0)),
             ..Stop::default()
         };
-        let mut level = first.0;
+        // What coarse films know of crossings as large as their pixels is worse than first
+        // sight where light and dark yarns lie side by side.
+        let coarsest = match first_sight_serves(&request.still) {
+            true => 0,
+            false => first.0,
+        };
+        let mut level = coarsest;
         let mut spent = 0.0;
         while level > 0 {
             // Stay until as much time was spent as one pass of the next size will take.
@@ -490,7 +496,7 @@ fn serve(
             ..Stop::default()
         };
         let traced = drawing.trace(&cloth, fibres, 0, stop, screen)?;
-        if level == first.0 {
+        if coarsest == 0 && first.0 == 0 {
             first.learn(traced.pass_seconds * 1e3);
         }
         let is_good = traced.error.is_some_and(|error| error < good);

@@ -81,7 +81,7 @@ fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
 const FOLLOWED: usize = 1;
 
 /// Steps of one request: halvings of the size, samples a pixel.
-const STEPS: [(u32, u32); 3] = [(2, 8), (1, 4), (0, 4)];
+const STEPS: [(u32, u32); 1] = [(0, 5)];
 
 /// What is shown of a view, and what was shown before: whatever was traced replaced what
 /// stood there, from a quarter of a path a pixel on.
