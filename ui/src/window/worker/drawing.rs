@@ -16,6 +16,8 @@ use super::{Aim, Desk, Fibres, LONGEST, Picture, PreviewRequest};
 /// Tracing goes on so many times as long as it takes to show what it found, before it is
 /// shown again.
 pub(super) const PATIENCE: u32 = 4;
+/// Samples a pixel from which a film's own halves tell how noisy it is.
+const LEAST_SAMPLES: u32 = 3;
 /// An old picture serves as it is where its pixels are no larger than the new ones, within
 /// what nobody sees.
 const AS_SHARP: f32 = 0.98;
@@ -195,7 +197,8 @@ impl Drawing<'_> {
                 last = None;
             }
             let due = |&(when, cost): &(Instant, Duration)| when.elapsed() >= self.patience * cost;
-            if !last.as_ref().is_none_or(due) || self.job.check().is_err() {
+            let unsure = pass.spp < LEAST_SAMPLES;
+            if unsure || !last.as_ref().is_none_or(due) || self.job.check().is_err() {
                 return;
             }
             let showing = Instant::now();
