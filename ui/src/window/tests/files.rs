@@ -214,7 +214,10 @@ fn the_draft_is_printed_and_exported() {
     window.step();
     window.key_press_modifiers(Modifiers::COMMAND, Key::P);
     type_path(&mut window, &pdf.display().to_string(), "Print");
-    wait_for(&mut window, "the pages", |_| pdf.exists());
+    // The file stands before its field is closed, and that takes the keys.
+    wait_for(&mut window, "the pages", |window| {
+        pdf.exists() && !window.state().files.is_asking()
+    });
     assert!(std::fs::read(&pdf).expect("read").starts_with(b"%PDF"));
     window.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::E);
     type_path(&mut window, &wif.display().to_string(), "Export");
