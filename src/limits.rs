@@ -17,6 +17,9 @@ pub const THREAD_PITCH_MM: RangeInclusive<f32> = 0.001..=100.0;
 /// Most crossings of a design.
 pub const CROSSINGS: u64 = 1 << 29;
 
+/// Most ends, and most picks, of a design: what is known of each thread takes memory as well.
+pub const THREADS: u64 = 1 << 20;
+
 /// Most ends or picks that a draft file may declare.
 pub const DRAFT_THREADS: u32 = 100_000;
 
@@ -61,6 +64,7 @@ pub fn table() -> Vec<Limit> {
         ("threads per cm", in_words(&SETT_PER_CM)),
         ("pitch of a single thread, mm", in_words(&THREAD_PITCH_MM)),
         ("crossings of a design", CROSSINGS.to_string()),
+        ("ends or picks of a design", THREADS.to_string()),
         ("ends or picks of a draft file", DRAFT_THREADS.to_string()),
         ("shafts and treadles", SHAFTS.to_string()),
         ("yarns of a design", YARNS.to_string()),

@@ -13,6 +13,9 @@ use super::tiles::{TILE, Tiles};
 /// around it. A crossing's number, and four times that, fit into 32 bits.
 pub const MAX_CROSSINGS: u64 = limits::CROSSINGS;
 
+/// The most ends, and the most picks.
+const THREADS: u64 = limits::THREADS;
+
 /// A tile of 64×64 crossings: one word a pick, bit = end.
 type Tile = [u64; TILE as usize];
 
@@ -38,6 +41,17 @@ pub enum SizeError {
         /// Picks asked for.
         picks: u64,
     },
+    /// More ends or picks than [`THREADS`].
+    #[error(
+        "{ends} ends × {picks} picks are too many threads (the most is {THREADS} either way): \
+         cut the design into parts"
+    )]
+    TooLong {
+        /// Ends asked for.
+        ends: u64,
+        /// Picks asked for.
+        picks: u64,
+    },
     /// More crossings than there is memory for.
     #[error("{}", TooMuch {
         what: format!("{ends} ends × {picks} picks"), needed: *needed, budget: *budget
@@ -57,6 +71,9 @@ pub enum SizeError {
 /// Bytes a crossing of a design: its region or its yarn, and the weave.
 const CROSSING_BYTES: u64 = 3;
 
+/// Bytes of what is known of a thread: its place, its yarn, its course.
+const THREAD_BYTES: u64 = 200;
+
 /// Refuses sizes that are empty, beyond [`MAX_CROSSINGS`] or beyond the memory that may be
 /// used, before any is taken.
 pub(crate) fn check_size(ends: u64, picks: u64) -> Result<(), SizeError> {
@@ -65,7 +82,11 @@ pub(crate) fn check_size(ends: u64, picks: u64) -> Result<(), SizeError> {
     }
     match ends.checked_mul(picks) {
         Some(crossings) if crossings <= MAX_CROSSINGS => {
-            let asked = memory::ask(crossings * CROSSING_BYTES, String::new);
+            if ends.max(picks) > THREADS {
+                return Err(SizeError::TooLong { ends, picks });
+            }
+            let needed = crossings * CROSSING_BYTES + (ends + picks) * THREAD_BYTES;
+            let asked = memory::ask(needed, String::new);
             asked.map_err(|refused| SizeError::Memory {
                 ends,
                 picks,
