@@ -14,6 +14,11 @@ pub enum OutputError {
         folder_of(.0).display()
     )]
     NoFolder(PathBuf),
+    /// A name that would break out of the texts that name files.
+    #[error(
+        "{}: a file that is written may have no line break in its name: choose another name", .0.display()
+    )]
+    Name(PathBuf),
     /// It cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -39,6 +44,10 @@ pub fn check<'i>(
     path: &Path,
     inputs: impl IntoIterator<Item = &'i Path>,
 ) -> Result<(), OutputError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if name.contains(['\n', '\r']) {
+        return Err(OutputError::Name(path.to_owned()));
+    }
     if !folder_of(path).is_dir() {
         return Err(OutputError::NoFolder(path.to_owned()));
     }
@@ -101,6 +110,23 @@ mod tests {
         }
         assert!(check(&place("new.png"), [&*place("w.png")]).is_ok());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
+    }
+
+    #[test]
+    fn a_name_with_a_line_break_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, sound) in [
+            ("a\nb.obj", false),
+            ("a\r.mhd", false),
+            ("a\tb.mhd", true),
+            ("a b.obj", true),
+        ] {
+            assert_eq!(
+                check(&folder.path().join(name), []).is_ok(),
+                sound,
+                "{name:?}"
+            );
+        }
     }
 
     #[test]

@@ -165,6 +165,14 @@ fn meta_image(folder: &Path, field: &Field, name: &str) -> Twins {
         fs::write(folder.join(file), numbers(24, from)).expect("written");
     }
     let line = format!("{name} = {}", field.example);
+    // Another name of what the head says already is refused beside it.
+    let unplaced: Vec<&str> = (lines.iter().copied())
+        .filter(|line| !line.starts_with("Offset"))
+        .collect();
+    let lines: &[&str] = match field.name {
+        "Position" | "Origin" => &unplaced,
+        _ => lines,
+    };
     let twins = Twins {
         with: folder.join("with.mhd"),
         without: folder.join("without.mhd"),

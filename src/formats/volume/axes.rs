@@ -10,6 +10,9 @@ use crate::render::Bounds;
 /// Share of a step by which an axis may be off x, y or z: what rounding in text leaves.
 const ASLANT: f64 = 1e-4;
 
+/// Edges of a voxel from the origin beyond which single precision would tell on the voxels.
+const FAR: f64 = 16_384.0;
+
 /// What to do with a volume whose axes lie aslant.
 pub(super) const RESAMPLE: &str = "resample it along x, y and z first (unu resample, or \
                                    SimpleITK's Resample), so that its axes are theirs";
@@ -21,6 +24,9 @@ pub(super) struct Lie {
     pub size: UVec3,
     /// The box, mm.
     pub bounds: Bounds,
+    /// Where the box begins in the file, mm, where that is so far away that it is taken to
+    /// begin at 0: nothing else stands beside a volume.
+    pub far: Option<[f64; 3]>,
     /// For x, y and z: the file's axis that runs along it, and whether it descends.
     along: [(usize, bool); 3],
 }
@@ -28,10 +34,30 @@ pub(super) struct Lie {
 impl Lie {
     /// Voxels whose axes are x, y and z.
     pub fn straight(size: [u32; 3], bounds: Bounds) -> Self {
+        let along = [0, 1, 2].map(|axis| (axis, false));
+        let [low, high] = [bounds.min, bounds.max].map(|v| v.to_array().map(f64::from));
+        Self::between(size.into(), low, high, along)
+    }
+
+    /// A box of voxels, moved to the origin where it is too far from there.
+    fn between(size: UVec3, low: [f64; 3], high: [f64; 3], along: [(usize, bool); 3]) -> Self {
+        let counts = size.to_array().map(f64::from);
+        let is_far = (0..3).any(|k| {
+            let extent = high[k] - low[k];
+            let away = low[k].abs().max(high[k].abs());
+            away.is_finite() && away > FAR * (extent / counts[k]) && away > 2.0 * extent
+        });
+        let from = if is_far { low } else { [0.0; 3] };
+        let corner =
+            |corner: [f64; 3]| Vec3::from_array([0, 1, 2].map(|k| (corner[k] - from[k]) as f32));
         Self {
-            size: size.into(),
-            bounds,
-            along: [0, 1, 2].map(|axis| (axis, false)),
+            size,
+            bounds: Bounds {
+                min: corner(low),
+                max: corner(high),
+            },
+            far: is_far.then_some(low),
+            along,
         }
     }
 
@@ -60,15 +86,8 @@ impl Lie {
             };
             high[k] = low[k] + count * edge;
         }
-        let vector = |v: [f64; 3]| Vec3::from_array(v.map(|x| x as f32));
-        Some(Self {
-            size: along.map(|(axis, _)| size[axis]).into(),
-            bounds: Bounds {
-                min: vector(low),
-                max: vector(high),
-            },
-            along,
-        })
+        let size = along.map(|(axis, _)| size[axis]).into();
+        Some(Self::between(size, low, high, along))
     }
 
     /// Whether x, y and z are the file's first, second and third axis, either way.
@@ -136,5 +155,27 @@ mod tests {
         let double = [[0.1, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, 0.1]];
         assert!(Lie::new([4, 5, 6], double, None).is_none());
         assert!(Lie::new([4, 5, 6], [[f64::NAN; 3]; 3], None).is_none());
+    }
+
+    #[test]
+    fn what_lies_far_away_keeps_its_size() {
+        let steps = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]];
+        let at = |x: f64| Lie::new([64, 64, 8], steps, Some([x, 0.05, 0.05])).unwrap();
+        for (x, far) in [(0.05, false), (1e3, false), (1e5, true), (-1e9, true)] {
+            let lie = at(x);
+            assert_eq!(lie.far.is_some(), far, "{x}");
+            let extent = lie.bounds.max - lie.bounds.min;
+            assert!(
+                (extent - Vec3::new(6.4, 6.4, 0.8)).length() < 1e-3,
+                "{x}: {extent}"
+            );
+        }
+        // Control: where it is, it would not.
+        assert!((((1e6 + 6.4) as f32 - 1e6_f32) - 6.4).abs() > 1e-3);
+        let far = Bounds {
+            min: Vec3::splat(1e6),
+            max: Vec3::splat(1e6 + 8.0),
+        };
+        assert!(Lie::straight([64, 64, 64], far).far.is_some());
     }
 }

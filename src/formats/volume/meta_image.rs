@@ -127,7 +127,16 @@ struct Head {
     big_endian: bool,
     voxels: Option<String>,
     warnings: Vec<String>,
+    /// The fields that stood there already, by what they say.
+    seen: Vec<(&'static str, String, String)>,
 }
+
+/// Names of one field.
+const SAME: [(&str, &[&str]); 3] = [
+    ("place", &["Offset", "Position", "Origin"]),
+    ("turn", &["TransformMatrix", "Rotation", "Orientation"]),
+    ("order", &["BinaryDataByteOrderMSB", "ElementByteOrderMSB"]),
+];
 
 /// What a head says, and the file its voxels are in.
 pub(super) fn field(path: &Path) -> Result<Field, VolumeFileError> {
@@ -170,6 +179,7 @@ impl Head {
             let text = String::from_utf8_lossy(line);
             if let Some((key, value)) = text.split_once('=') {
                 let (key, value) = (key.trim(), value.trim());
+                head.once(key, value)?;
                 head.take(key, value)?;
                 if key == "ElementDataFile" && value.eq_ignore_ascii_case("LOCAL") {
                     break;
@@ -177,6 +187,26 @@ impl Head {
             }
         }
         Ok((head, place))
+    }
+
+    /// Refuses a field that was given before, by this name or another, and said other things.
+    fn once(&mut self, key: &str, value: &str) -> Result<(), Wrong> {
+        let same = SAME.iter().find(|(_, names)| names.contains(&key));
+        let known = FIELDS.fields.iter().map(|field| field.name);
+        let meaning = same.map(|(meaning, _)| *meaning);
+        let Some(meaning) = meaning.or_else(|| known.into_iter().find(|&name| name == key)) else {
+            return Ok(());
+        };
+        if let Some((_, name, before)) = self.seen.iter().find(|seen| seen.0 == meaning)
+            && before != value
+        {
+            return Err(Wrong::new(
+                format!("its {name} is {before:.60}, and its {key} is {value:.60}"),
+                "leave the right one",
+            ));
+        }
+        (self.seen).push((meaning, key.to_owned(), value.to_owned()));
+        Ok(())
     }
 
     fn take(&mut self, key: &str, value: &str) -> Result<(), Wrong> {
@@ -218,7 +248,10 @@ impl Head {
             }
             "ElementSpacing" => self.spacing = Some(three()?),
             "ElementSize" => self.element = Some(three()?),
-            "Offset" | "Origin" | "Position" => self.origin = Some(three()?),
+            "Offset" | "Origin" | "Position" => {
+                let place = Some(three()?).filter(|place| place.iter().all(|x| x.is_finite()));
+                self.origin = Some(place.ok_or_else(|| wrong("give three finite numbers"))?);
+            }
             "TransformMatrix" | "Rotation" | "Orientation" => {
                 let matrix = numbers(value).and_then(|all| <[f64; 9]>::try_from(all).ok());
                 let matrix = matrix.ok_or_else(|| wrong("give nine numbers"))?;

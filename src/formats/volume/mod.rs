@@ -38,7 +38,7 @@ use crate::volume::source::{CellBox, SourceVoxel, VoxelSource};
 
 pub use meta_image::FIELDS as META_IMAGE_FIELDS;
 pub use nrrd_head::FIELDS as NRRD_FIELDS;
-pub use read::{GridFile, read, read_scaled};
+pub use read::{GridFile, files_read, read, read_scaled};
 pub use vol::FIELDS as VOL_FIELDS;
 
 /// The formats.

@@ -159,13 +159,16 @@ fn understood(path: &Path, head: &Head) -> Result<Field, Wrong> {
         )
     })?;
     head.remarks(&mut warnings);
+    if head.big_endian.is_none() && scalar.bytes() > 1 {
+        warnings.push("it does not say its endian: taking little".to_owned());
+    }
     Ok(Field {
         path: path.to_owned(),
         lie,
         components,
         by_rows,
         scalar,
-        big_endian: head.big_endian,
+        big_endian: head.big_endian.unwrap_or(false),
         start: Start::Last,
         unscaled: scale.unknown,
         warnings,

@@ -14,6 +14,7 @@ pub const FIELDS: Table = Table {
         Field::new("sizes", Handling::Honoured, "3 4 2"),
         Field::new("encoding", Handling::Refused, "gzip"),
         Field::new("endian", Handling::Honoured, "big"),
+        Field::new("endian", Handling::Refused, "middle"),
         Field::new("line skip", Handling::Honoured, "1"),
         Field::new("byte skip", Handling::Honoured, "4"),
         Field::new("byte skip", Handling::Honoured, "-1"),
@@ -100,7 +101,8 @@ pub(super) struct Head {
     pub scalar: Option<Scalar>,
     pub dimension: Option<u64>,
     pub sizes: Vec<u32>,
-    pub big_endian: bool,
+    /// `None`: it is not said.
+    pub big_endian: Option<bool>,
     pub data_file: Option<String>,
     pub line_skip: u64,
     pub byte_skip: i64,
@@ -116,6 +118,8 @@ pub(super) struct Head {
     space_units: Vec<String>,
     sample_units: String,
     old: Vec<String>,
+    /// Names of the fields that stood there already.
+    seen: Vec<String>,
 }
 
 /// Where the voxels lie.
@@ -152,7 +156,15 @@ impl Head {
             if let Some((key, value)) = text.split_once(':')
                 && !value.starts_with('=')
             {
-                head.take(&key.to_ascii_lowercase().replace(' ', ""), value.trim())?;
+                let name = key.to_ascii_lowercase().replace(' ', "");
+                if head.seen.contains(&name) {
+                    return Err(Wrong::new(
+                        format!("its field {key:.40} stands there twice"),
+                        "leave the right one",
+                    ));
+                }
+                head.take(&name, value.trim())?;
+                head.seen.push(name);
             }
         }
         Ok((head, None))
@@ -184,7 +196,16 @@ impl Head {
                     "write it again of raw encoding (unu save -f nrrd -e raw)",
                 ));
             }
-            "endian" => self.big_endian = value.eq_ignore_ascii_case("big"),
+            "endian" => {
+                self.big_endian = Some(match value.to_ascii_lowercase().as_str() {
+                    "big" => true,
+                    "little" => false,
+                    _ => {
+                        let what = format!("its endian is {value:.40}");
+                        return Err(Wrong::new(what, "give big or little"));
+                    }
+                });
+            }
             "lineskip" => {
                 let remedy = "give how many lines stand before the voxels";
                 let skip = value.parse();
@@ -305,7 +326,22 @@ impl Head {
         size: [u32; 3],
         warnings: &mut Vec<String>,
     ) -> Result<Scale, Wrong> {
-        let space = lengths("space units", &self.space_units, 3, 0, warnings);
+        let first = axes - 3;
+        let of_space = lengths("space units", &self.space_units, 3, 0, warnings);
+        // Some programs name the unit of each axis beside its direction.
+        let by_axis = !self.directions.is_empty() && !self.units.is_empty();
+        let space = match by_axis {
+            true if self.space_units.is_empty() => {
+                lengths("units", &self.units, axes, first, warnings)
+            }
+            true => {
+                if lengths("units", &self.units, axes, first, warnings) != of_space {
+                    warnings.push("its units are not its space units, which are taken".to_owned());
+                }
+                of_space
+            }
+            false => of_space,
+        };
         let mut origin = self
             .origin
             .filter(|origin| origin.iter().all(|x| x.is_finite()));
@@ -314,13 +350,13 @@ impl Head {
         }
         if !self.directions.is_empty() {
             let steps = self.step_vectors(axes, space)?;
+            self.remark_beside_directions(first, warnings);
             return Ok(Scale {
                 steps,
                 origin,
                 unknown: None,
             });
         }
-        let first = axes - 3;
         let units = lengths("units", &self.units, axes, first, warnings);
         let mut steps = [[0.0; 3]; 3];
         let mut unknown = [false; 3];
@@ -354,6 +390,29 @@ impl Head {
             origin,
             unknown,
         })
+    }
+
+    /// Says which fields are not followed for the space directions beside them.
+    fn remark_beside_directions(&self, first: usize, warnings: &mut Vec<String>) {
+        let long = |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let other =
+            (self.spacings.iter().zip(&self.directions).skip(first)).any(|(spacing, direction)| {
+                let edge = direction.as_deref().map_or(f64::NAN, long);
+                spacing.is_finite() && !((spacing.abs() / edge - 1.0).abs() <= 1e-3)
+            });
+        let given = |list: &[f64]| list.iter().any(|number| number.is_finite());
+        let fields = [
+            ("spacings", other),
+            ("axis mins", given(&self.mins)),
+            ("axis maxs", given(&self.maxs)),
+        ];
+        for (field, stands) in fields {
+            if stands {
+                warnings.push(format!(
+                    "its {field} stand beside space directions, which are taken"
+                ));
+            }
+        }
     }
 
     /// The space directions of the axes along which voxels lie, mm.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::{UVec3, Vec3};
 
@@ -141,6 +141,20 @@ pub fn read_scaled(
     Ok(GridFile { grid, warnings })
 }
 
+/// The files that [`read_scaled`] reads for a volume: its head, those beside it, and the files
+/// their voxels are in.
+pub fn files_read(path: &Path) -> Vec<PathBuf> {
+    let mut files = vec![path.to_owned()];
+    files.extend(["albedo", "sggx"].map(|part| beside(path, part)));
+    if let Some(format) = VolumeFormat::opened(path) {
+        let voxels: Vec<PathBuf> = (files.iter())
+            .filter_map(|head| Some(open(format, head).ok()?.path))
+            .collect();
+        files.extend(voxels);
+    }
+    files
+}
+
 /// So many of them were.
 fn counted(number: u64, of: &str) -> String {
     match number {
@@ -171,6 +185,13 @@ fn extinction(
                 ));
             }
         }
+    }
+    if let Some([x, y, z]) = sigma.lie.far {
+        warnings.push(format!(
+            "{}: its box begins at ({x}, {y}, {z}) mm, too far away for voxels of its size: \
+             taking it to begin at 0",
+            path.display()
+        ));
     }
     say(&sigma.warnings, path, warnings);
     Ok(sigma)
@@ -237,6 +258,12 @@ fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> VolumeFileError + '_ {
 
 /// The first bytes of a file, in which its head is.
 pub(super) fn beginning(path: &Path) -> Result<Vec<u8>, VolumeFileError> {
+    let about = std::fs::metadata(path).map_err(unreadable(path))?;
+    if !about.is_file() {
+        // A pipe would wait for its other end, and volumes are read here and there.
+        let why = std::io::Error::other("it is no regular file: copy it into one");
+        return Err(unreadable(path)(why));
+    }
     let file = File::open(path).map_err(unreadable(path))?;
     let mut start = Vec::new();
     (file.take(LONGEST_HEAD).read_to_end(&mut start)).map_err(unreadable(path))?;
