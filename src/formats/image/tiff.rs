@@ -376,13 +376,23 @@ impl<'f> Canvas<'f> {
     ) -> Result<(), Fault> {
         let (width, height) = (self.fields.width as usize, self.fields.height as usize);
         let (left, top) = (left as usize, top as usize);
+        let whole = across as usize * down as usize;
         let (across, down) = (
             (across as usize).min(width - left),
             (down as usize).min(height - top),
         );
         let short = || Fault::damaged("a strip is too short");
+        let read_samples = match read {
+            DecodingResult::U8(all) => all.len(),
+            DecodingResult::U16(all) => all.len(),
+            _ => 0,
+        };
+        let colours = self.fields.colours();
         let samples = if self.fields.planar {
             1
+        } else if self.fields.alpha.is_none() && read_samples == whole * colours {
+            // The decoder leaves out what lies behind the colours and is no alpha.
+            colours
         } else {
             usize::from(self.fields.samples)
         };
@@ -474,22 +484,31 @@ impl<'r> Line<'r> {
 }
 
 impl Fields {
+    /// Samples of a pixel that are its colour.
+    fn colours(&self) -> usize {
+        match self.photometric {
+            RGB => 3,
+            CMYK => 4,
+            _ => 1,
+        }
+    }
+
     /// Colours of interleaved samples; whether any was transparent.
     fn add_pixels(&self, target: &mut [[u8; 3]], line: &Line<'_>, samples: usize) -> bool {
-        let mut transparent = false;
+        let (mut transparent, colours) = (false, self.colours());
         for (x, colour) in target.iter_mut().enumerate() {
             let sample = |channel: usize| line.at(x * samples + channel);
-            let (found, colours) = match self.photometric {
-                RGB => ([sample(0), sample(1), sample(2)], 3),
+            let found = match self.photometric {
+                RGB => [sample(0), sample(1), sample(2)],
                 CMYK => {
                     let light = |ink: u8| {
                         let light = u32::from(255 - ink) * u32::from(255 - sample(3));
                         ((light + 127) / 255) as u8
                     };
-                    ([light(sample(0)), light(sample(1)), light(sample(2))], 4)
+                    [light(sample(0)), light(sample(1)), light(sample(2))]
                 }
-                WHITE_IS_ZERO => ([255 - sample(0); 3], 1),
-                _ => ([sample(0); 3], 1),
+                WHITE_IS_ZERO => [255 - sample(0); 3],
+                _ => [sample(0); 3],
             };
             *colour = match self.alpha.filter(|_| samples > colours) {
                 Some(kind) => {
@@ -506,12 +525,7 @@ impl Fields {
     /// One plane of separate planes, whether it made any transparent; those beyond the
     /// colours and alpha are left out.
     fn add_plane(&self, target: &mut [[u8; 3]], line: &Line<'_>, plane: usize) -> bool {
-        let colours = match self.photometric {
-            RGB => 3,
-            CMYK => 4,
-            _ => 1,
-        };
-        if let Some(kind) = self.alpha.filter(|_| plane == colours) {
+        if let Some(kind) = self.alpha.filter(|_| plane == self.colours()) {
             let mut transparent = false;
             for (x, colour) in target.iter_mut().enumerate() {
                 let alpha = line.at(x);
