@@ -187,10 +187,17 @@ fn the_source_picture_is_bounded_and_documents_without_one_are_read() {
 }
 
 #[test]
-fn fields_of_later_programs_are_skipped() {
+fn fields_of_later_programs_are_skipped_and_told() {
     let text = ron::write(&everything()).unwrap();
     let later = text.replacen("ends: 70", "mood: [(1, \"calm\")], ends: 70", 1);
-    assert!(ron::read(later.as_bytes(), "x").unwrap() == everything());
+    let (design, told) = ron::read_told(later.as_bytes(), "x").unwrap();
+    assert!(design == everything());
+    assert!(
+        told.len() == 1 && told[0].contains("design.mood"),
+        "{told:?}"
+    );
+    // Control: what is known is not told of.
+    assert!(ron::read_told(text.as_bytes(), "x").unwrap().1.is_empty());
     let newer = text.replacen("pickglass: 1", "pickglass: 2", 1);
     let message = ron::read(newer.as_bytes(), "x").unwrap_err().to_string();
     assert!(message.contains("newer than"), "{message}");

@@ -214,9 +214,12 @@ pub fn load_bytes(
         Kind::Ron => {
             let mut warnings = sheet::Warnings::default();
             let text = encoding::as_utf_8(bytes, &mut warnings);
+            let (design, unknown) = ron::read_told(&text, name)?;
+            let mut warnings = warnings.finish();
+            warnings.extend(unknown);
             Ok(Imported {
-                design: with_options(ron::read(&text, name)?, name, options)?,
-                warnings: warnings.finish(),
+                design: with_options(design, name, options)?,
+                warnings,
             })
         }
     }

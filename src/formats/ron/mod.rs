@@ -111,6 +111,14 @@ pub fn version(text: &str) -> Option<u32> {
 /// # Errors
 /// [`RonError`]; a newer version and a damaged file each have their own.
 pub fn read(bytes: &[u8], name: &str) -> Result<Design, RonError> {
+    Ok(read_told(bytes, name)?.0)
+}
+
+/// As [`read`], with what was remarked on: fields of a later program, which are left out.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_told(bytes: &[u8], name: &str) -> Result<(Design, Vec<String>), RonError> {
     let file = || name.to_owned();
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text,
@@ -134,13 +142,24 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Design, RonError> {
     match version(text) {
         None => Err(RonError::NotADesign { file: file() }),
         Some(1) => {
-            let document = v1::parse(text.trim_start_matches('\u{feff}'))
+            let (document, unknown) = v1::parse(text.trim_start_matches('\u{feff}'))
                 .map_err(|error| damaged(file(), &error))?;
-            v1::to_design(document).map_err(|fault| RonError::Content {
+            let design = v1::to_design(document).map_err(|fault| RonError::Content {
                 file: file(),
                 place: fault.place,
                 problem: fault.problem,
-            })
+            })?;
+            let told = (!unknown.is_empty()).then(|| {
+                let more = unknown.len() > v1::MOST_UNKNOWN;
+                let named = unknown.len().min(v1::MOST_UNKNOWN);
+                format!(
+                    "{name}: fields that are not known here, mistyped or of a later version, are \
+                     left out: {}{}",
+                    unknown[..named].join(", "),
+                    if more { " and more" } else { "" }
+                )
+            });
+            Ok((design, told.into_iter().collect()))
         }
         Some(0) => Err(RonError::NotADesign { file: file() }),
         Some(version) => Err(RonError::Newer {

@@ -19,6 +19,9 @@ use crate::design::{
     Yarn, YarnId, YarnMap, YarnMaps, check_size,
 };
 
+/// Unknown fields that are named one by one.
+pub(super) const MOST_UNKNOWN: usize = 8;
+
 #[derive(Serialize, Deserialize)]
 pub(super) struct Document {
     pickglass: u32,
@@ -250,10 +253,19 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T
     }
 }
 
-pub(super) fn parse(text: &str) -> Result<Document, ::ron::error::SpannedError> {
-    ::ron::Options::default()
-        .with_recursion_limit(32)
-        .from_str(text)
+/// The document, and the names of fields that it has and this version does not know.
+pub(super) fn parse(text: &str) -> Result<(Document, Vec<String>), ::ron::error::SpannedError> {
+    let options = ::ron::Options::default().with_recursion_limit(32);
+    let mut reader = ::ron::Deserializer::from_str_with_options(text, &options)?;
+    let mut unknown = Vec::new();
+    let read = serde_ignored::deserialize(&mut reader, |field| {
+        if unknown.len() <= MOST_UNKNOWN {
+            unknown.push(field.to_string());
+        }
+    });
+    let document = read.map_err(|error| reader.span_error(error))?;
+    (reader.end()).map_err(|error| reader.span_error(error))?;
+    Ok((document, unknown))
 }
 
 pub(super) fn print(document: &Document) -> Result<String, String> {
