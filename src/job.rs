@@ -6,7 +6,7 @@ use std::time::Instant;
 
 /// The work was cancelled by its owner: a value, not a message on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("cancelled")]
+#[error("cancelled before it was done: nothing was written")]
 pub struct Cancelled;
 
 type Listener = dyn Fn(&str, f32) + Send + Sync;

@@ -114,10 +114,12 @@ fn filled(
     Ok((pending, length))
 }
 
+/// A thread by its number in the design's file, which counts from 1.
 fn thread_name(tube: &YarnTube) -> String {
+    let number = tube.thread + 1;
     match tube.direction {
-        Direction::Warp => format!("end_{}", tube.thread),
-        Direction::Weft => format!("pick_{}", tube.thread),
+        Direction::Warp => format!("end_{number}"),
+        Direction::Weft => format!("pick_{number}"),
     }
 }
 

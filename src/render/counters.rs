@@ -50,11 +50,11 @@ impl Counters {
                 ", too few to be seen"
             };
             warnings.push(format!(
-                "{} walks of light on {} paths were given up after {} steps and count as \
-                 absorbed{what}",
+                "walks of light that found no end within {} steps and count as absorbed: {} on \
+                 {} paths{what}",
+                super::track::STEP_CAP,
                 self.capped_walks,
-                self.paths,
-                super::track::STEP_CAP
+                self.paths
             ));
         }
         if self.invalid_rays > 0 {

@@ -263,7 +263,7 @@ pub fn render(
 }
 
 /// As [`render()`], in a light that was read before.
-fn render_lit(
+pub(super) fn render_lit(
     prepared: &PreparedCloth,
     request: &StillRequest,
     lights: LightRig,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::finishing;
-use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, render};
+use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, lights, render_lit};
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{StillReport, StillRequest};
 use super::{LARGEST_SIDE, StillError, png_ending};
@@ -145,6 +145,8 @@ pub fn render_sheet(
     ask_for_picture(width, height)?;
     ask_for_sheet(layout.size)?;
     let job = &finishing::bounded(&request, job);
+    // What is wrong with the light is said before anything takes long.
+    let lights = lights(&request.light, request.view, request.turned)?;
     let clear = [1.0, 1.0, 1.0, 0.0];
     let mut picture = png::Picture {
         width: layout.size.0,
@@ -162,7 +164,7 @@ pub fn render_sheet(
             Some(ready) if recoloured => ready,
             _ => prepare(&design, &request, store, job)?,
         };
-        let still = render(&ready, &request, job, &mut |pass| {
+        let still = render_lit(&ready, &request, lights.clone(), job, &mut |pass| {
             on_pass(index, count, pass);
         })?;
         let (x, y) = layout.place(index, width, height);
