@@ -7,6 +7,7 @@
 mod cli;
 mod command_table;
 mod commands;
+mod idle;
 mod interrupt;
 mod late;
 mod opened;

@@ -1,5 +1,6 @@
 //! A design that was opened: where it came from and what was remarked on.
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -156,6 +157,19 @@ pub fn writing(args: &ConvertArgs) -> SaveOptions {
             .or(args.image.origin)
             .or(args.image.convention.map(|maker| maker.reading().corner)),
     }
+}
+
+/// The first bytes of a file, by which its kind is known; none where it cannot be read.
+pub fn head(path: &Path) -> Vec<u8> {
+    let mut head = Vec::new();
+    // A pipe would wait for its other end.
+    if path.is_file()
+        && let Ok(file) = std::fs::File::open(path)
+        && file.take(64).read_to_end(&mut head).is_err()
+    {
+        head.clear();
+    }
+    head
 }
 
 fn no_such_preset(name: &str) -> anyhow::Error {

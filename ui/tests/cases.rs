@@ -53,5 +53,7 @@ mod case_20;
 mod case_20_files;
 #[path = "cases/case_20_limits.rs"]
 mod case_20_limits;
+#[path = "cases/case_21.rs"]
+mod case_21;
 #[path = "cases/volumes.rs"]
 mod volumes;

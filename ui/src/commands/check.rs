@@ -5,6 +5,7 @@ use pickglass::design::{Density, FloatKind};
 use serde_json::{Map, Value, json};
 
 use crate::cli::CheckArgs;
+use crate::idle;
 use crate::opened::Opened;
 use crate::out;
 
@@ -15,6 +16,7 @@ const SNAG_MM: f32 = 5.0;
 const SHOWN_SHAFTS: usize = 24;
 
 pub fn run(args: &CheckArgs) -> anyhow::Result<()> {
+    idle::in_reading(&args.design, &args.image)?;
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     let report = check(&opened.design);
     let mut warnings = opened.warnings.clone();

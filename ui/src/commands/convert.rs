@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::note_warnings;
 use crate::cli::ConvertArgs;
+use crate::idle;
 use crate::opened::{self, Opened};
 use crate::out;
 
@@ -17,6 +18,7 @@ pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
     inputs.extend(args.loom.like.as_deref());
     inputs.extend(args.loom.loom.as_deref().map(Path::new));
     output::check(&args.output, inputs)?;
+    idle::in_converting(args)?;
     let opened = Opened::argument(&args.input, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let lost = write(&opened.design, args)?;

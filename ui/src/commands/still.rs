@@ -1,19 +1,20 @@
 //! `pickglass still`: a picture of the cloth.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
 use super::{note_warnings, seconds_json};
 use crate::cli::{RendererArg, StillArgs};
+use crate::idle;
 use crate::interrupt::Interrupt;
 use crate::late::Late;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::output;
-use pickglass::formats::volume::VolumeFormat;
+use pickglass::formats::volume::{self, VolumeFormat};
 use pickglass::job::Job;
 use pickglass::render::Backing;
 use pickglass::still::{self, Pass, StillError, StillReport, StillRequest, Stop};
@@ -31,11 +32,18 @@ const ALL_COLOURWAYS: &str = "all";
 pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     refuse_absent_renderers(args.renderer)?;
     let path = &args.output.0;
+    let volume = Path::new(&args.design);
+    let is_volume = VolumeFormat::opened(volume).is_some();
+    let parts = match is_volume {
+        true => volume::files_read(volume),
+        false => Vec::new(),
+    };
     let mut inputs = Opened::inputs(&args.design, &args.image);
     inputs.extend(args.light.file());
+    inputs.extend(parts.iter().map(PathBuf::as_path));
     output::check(path, inputs)?;
-    let volume = Path::new(&args.design);
-    if VolumeFormat::opened(volume).is_some() {
+    if is_volume {
+        idle::of_volume(args)?;
         let request = request(args, Backing::None);
         let work = Work::begin(&request.stop, begun);
         let volume = (volume, args.voxel);
@@ -50,6 +58,7 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
             "--voxel: only a volume has voxels of its own: give --sett to scale a design"
         );
     }
+    idle::in_reading(&args.design, &args.image)?;
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let request = request(args, Backing::Itself);

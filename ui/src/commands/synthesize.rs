@@ -13,10 +13,12 @@ use serde_json::json;
 
 use super::{note_warnings, seconds_json};
 use crate::cli::{MethodArg, SynthesizeArgs};
+use crate::idle;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
 
 pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
+    idle::in_reading(&args.design, &args.image)?;
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let progress = Progress::new();

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use super::note_warnings;
 use crate::cli::VolumeArgs;
+use crate::idle;
 use crate::interrupt::Interrupt;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
@@ -22,6 +23,7 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
     let path = &args.output.0;
     let inputs = inputs(args);
     output::check(path, inputs.iter().copied())?;
+    idle::in_reading(&args.design, &args.image)?;
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let region = region(args, &opened);

@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::{note_warnings, still};
 use crate::cli::WindowArgs;
+use crate::idle;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
 use crate::window::{self, NoWindow, Start};
@@ -22,6 +23,7 @@ const FALLBACK_SECONDS: f64 = 20.0;
 
 pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
     let argument = args.design.as_deref().unwrap_or(DEFAULT_PRESET);
+    idle::in_reading(argument, &args.image)?;
     let opened = Opened::argument(argument, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let name = opened.name().to_owned();

@@ -1,24 +1,24 @@
 //! Opening and saving: the system's dialog on its own thread, a typed path where there is
 //! none, and reading and writing on a thread as well.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use egui::RichText;
-use pickglass::design::{Design, SourceImage};
+use pickglass::design::Design;
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::pdf::{self, PdfOptions};
-use pickglass::formats::{self, SaveOptions, atomic, jc5, output, photo};
+use pickglass::formats::photo::{self, Photo};
+use pickglass::formats::{self, SaveOptions, atomic, jc5, output};
 use pickglass::text::with_causes;
 
 use super::image_form::{self, ImageForm};
 use super::session::{self, Session};
 use super::task::{Outcome, Task};
 use super::{dialog, typing};
-use crate::opened::Opened;
+use crate::opened::{Opened, head};
 use crate::tokens::{self, Palette};
 
 /// A dialog that ends sooner than this without a choice never opened, s.
@@ -49,10 +49,7 @@ pub enum FileEvent {
     /// A loom file, likewise.
     Loom(PathBuf),
     /// A picture to draw by.
-    Reference {
-        path: PathBuf,
-        source: Box<SourceImage>,
-    },
+    Reference { path: PathBuf, picture: Box<Photo> },
     /// This state of the document is in its file.
     Saved { path: PathBuf, state: u64 },
     /// A copy was written; what of the design is not in it, one line each.
@@ -319,7 +316,7 @@ impl Files {
         let work = move || match photo::load(&path) {
             Ok(photo) => FileEvent::Reference {
                 path,
-                source: Box::new(photo.source),
+                picture: Box::new(photo),
             },
             Err(error) => FileEvent::OpenFailed(error.to_string()),
         };
@@ -612,16 +609,6 @@ fn opened(read: anyhow::Result<Opened>) -> FileEvent {
 }
 
 /// The first bytes of a file, which tell what has to be asked about it. Of one that cannot
-/// be read there are none: opening it says why.
-fn head(path: &Path) -> Vec<u8> {
-    let mut head = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut head));
-    match read {
-        Ok(_) => head,
-        Err(_) => Vec::new(),
-    }
-}
-
 /// Writes a design as pages.
 fn print(design: &Design, turned: bool, path: &Path) -> Result<(), String> {
     let options = PdfOptions {

@@ -26,14 +26,14 @@ use crate::opened::Opened;
 impl App {
     /// Opens a design.
     pub(super) fn take_design(&mut self, opened: &Opened, session: Session) {
-        for warning in &opened.warnings {
-            self.warn(warning.clone(), "The design was opened.");
-        }
         if let Some(path) = &opened.path {
             self.settings.opened(path);
             self.write_settings();
         }
         self.show_session(Some(session));
+        for warning in &opened.warnings {
+            self.warn(warning.clone(), "The design was opened.");
+        }
     }
 
     /// Shows another document, or the start page; the copy of what was open before is not
@@ -41,6 +41,9 @@ impl App {
     pub(super) fn show_session(&mut self, session: Option<Session>) {
         self.autosave.leave();
         self.remember_reference();
+        if self.session.is_some() {
+            self.toasts.leave_design();
+        }
         self.session = session;
         self.draft.forget();
         self.lay_out();
@@ -209,8 +212,11 @@ impl App {
             }
             FileEvent::Image(path) => self.import = Some(Import::new(path)),
             FileEvent::Loom(path) => self.import = Some(Import::of_loom(path)),
-            FileEvent::Reference { path, source } => {
-                self.take_reference(ctx, path, &source);
+            FileEvent::Reference { path, picture } => {
+                for warning in picture.warnings {
+                    self.warn(warning, "The picture was opened.");
+                }
+                self.take_reference(ctx, path, &picture.source);
             }
             FileEvent::OpenFailed(error) => {
                 let kept = match &self.session {

@@ -78,6 +78,11 @@ impl Toasts {
         }
     }
 
+    /// Puts away what was said of a design that is not open any more; what went wrong stays.
+    pub fn leave_design(&mut self) {
+        self.0.retain(|toast| toast.grade == Grade::Error);
+    }
+
     /// Lets the newest message show a file that came of the work.
     pub fn made(&mut self, path: &Path) {
         if let Some(toast) = self.0.last_mut() {
@@ -205,6 +210,18 @@ mod tests {
         assert_eq!(after(&mut toasts, &ctx, 10.0 + STAY - 0.5).len(), 3);
         assert_eq!(after(&mut toasts, &ctx, 10.5 + STAY), ["cut", "lost"]);
         assert_eq!(after(&mut toasts, &ctx, 1e4), ["cut", "lost"]);
+    }
+
+    #[test]
+    fn what_was_said_of_a_design_goes_with_it() {
+        let ctx = egui::Context::default();
+        let mut toasts = Toasts::default();
+        toasts.say(Grade::Done, "saved", "");
+        toasts.say(Grade::Warning, "a sett was assumed", "");
+        toasts.say(Grade::Error, "lost", "");
+        toasts.leave_design();
+        toasts.say(Grade::Warning, "the next one's", "");
+        assert_eq!(after(&mut toasts, &ctx, 1.0), ["lost", "the next one's"]);
     }
 
     #[test]

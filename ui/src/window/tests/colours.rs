@@ -168,7 +168,7 @@ fn a_reference_lies_over_the_draft_and_comes_back_with_its_design() {
     );
     let preset = Opened::preset("oxford").expect("a preset").design;
     pickglass::formats::save(&preset, &design, &Default::default()).expect("saved");
-    image::RgbImage::from_pixel(40, 30, image::Rgb([200, 30, 30]))
+    image::RgbaImage::from_pixel(40, 30, image::Rgba([200, 30, 30, 128]))
         .save(&picture)
         .expect("written");
     let settings = SettingsFile::at(folder.path().join("window.ron"));
@@ -198,6 +198,7 @@ fn a_reference_lies_over_the_draft_and_comes_back_with_its_design() {
     wait_for(&mut window, "its controls", |window| {
         shows(window, "Take it away")
     });
+    assert!(says(&window, "transparent pixels are read as white paper"));
     // The weave knows nothing of it.
     let now = window.state().document().expect("open");
     assert!(!now.is_modified() && now.design() == document.design());

@@ -1,0 +1,150 @@
+//! Options that have nothing to say where they were given: refused by name, so that nobody
+//! believes that they were followed.
+
+use std::path::Path;
+
+use anyhow::bail;
+use pickglass::formats::image::Encoding;
+use pickglass::formats::{jc5, presets};
+use pickglass::render::Backing;
+
+use crate::cli::{ConvertArgs, ImageArgs, StillArgs};
+use crate::opened::head;
+
+/// Dials of what is woven; a volume has no weave.
+const OF_CLOTH: [&str; 6] = [
+    "method",
+    "rank",
+    "patch",
+    "level",
+    "level-correction",
+    "backing-layers",
+];
+
+/// Effects of what is woven.
+const EFFECTS_OF_CLOTH: [&str; 3] = ["hairs", "edge-fixing", "randomisation"];
+
+/// Endings of images that are written.
+const IMAGES: [&str; 5] = ["png", "bmp", "tif", "tiff", "gif"];
+
+/// What of the image flags is given, by name.
+fn given(image: &ImageArgs) -> Vec<&'static str> {
+    let flags = [
+        ("--as", image.what.is_some()),
+        ("--convention", image.convention.is_some()),
+        ("--black", image.black.is_some()),
+        ("--origin", image.origin.is_some()),
+        ("--mirror", image.mirror),
+        ("--key", image.key.is_some()),
+        ("--warp-map", image.warp_map.is_some()),
+        ("--weft-map", image.weft_map.is_some()),
+        ("--face-down", image.face_down),
+    ];
+    let given = flags.into_iter().filter(|(_, given)| *given);
+    given.map(|(flag, _)| flag).collect()
+}
+
+/// Refuses flags of images and loom files where none is read.
+///
+/// # Errors
+/// One line that names the first of them.
+pub fn in_reading(argument: &str, image: &ImageArgs) -> anyhow::Result<()> {
+    refuse(argument, image, &[], false)
+}
+
+/// As [`in_reading`]; what is written follows some of them as well.
+///
+/// # Errors
+/// As [`in_reading`], also where what is written is no image.
+pub fn in_converting(args: &ConvertArgs) -> anyhow::Result<()> {
+    let ending = args.output.extension().unwrap_or_default();
+    let ending = ending.to_string_lossy().to_ascii_lowercase();
+    let written = IMAGES.contains(&ending.as_str());
+    let out = [
+        ("--write", args.write.is_some()),
+        ("--out-black", args.out_black.is_some()),
+        ("--out-origin", args.out_origin.is_some()),
+    ];
+    if let (false, Some((flag, _))) = (written, out.iter().find(|(_, given)| *given)) {
+        bail!(
+            "{flag}: {} is no image: leave it out, or end the name in .png",
+            args.output.display()
+        );
+    }
+    let followed: &[&str] = match written {
+        true => &["--as", "--convention", "--black", "--origin"],
+        false => &[],
+    };
+    refuse(&args.input, &args.image, followed, ending == "jc5")
+}
+
+fn refuse(
+    argument: &str,
+    image: &ImageArgs,
+    followed: &[&str],
+    writes_loom: bool,
+) -> anyhow::Result<()> {
+    let given = given(image);
+    if given.is_empty() {
+        return Ok(());
+    }
+    let is_preset = presets::design(argument).is_some();
+    let start = match is_preset {
+        true => Vec::new(),
+        false => head(Path::new(argument)),
+    };
+    if start.is_empty() && !is_preset {
+        // What is wrong with the file is said where it is read.
+        return Ok(());
+    }
+    let reads_image =
+        Encoding::of(&start).is_some() || image.warp_map.is_some() || image.weft_map.is_some();
+    let reads_loom = jc5::recognises(&start);
+    for flag in given {
+        let (idle, what) = match flag {
+            "--warp-map" | "--weft-map" => (false, ""),
+            "--face-down" => (!reads_loom && !writes_loom, "loom file (.jc5)"),
+            _ => (!reads_image && !followed.contains(&flag), "image"),
+        };
+        if idle {
+            bail!("{flag}: {argument} is no {what}: leave it out");
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what only cloth has, where a volume is looked at.
+///
+/// # Errors
+/// One line that names the first of it.
+pub fn of_volume(args: &StillArgs) -> anyhow::Result<()> {
+    let mut idle: Vec<String> = given(&args.image).into_iter().map(str::to_owned).collect();
+    if args.sett.sett.is_some() {
+        bail!("--sett: a volume has voxels and no threads: --voxel scales it");
+    }
+    if args.colourway.is_some() {
+        idle.push("--colourway".to_owned());
+    }
+    if args.backing == Some(Backing::Itself) {
+        idle.push("--backing self".to_owned());
+    }
+    let dials = args.dials.iter().map(|dial| dial.name.as_str());
+    idle.extend(
+        dials
+            .filter(|name| OF_CLOTH.contains(name))
+            .map(|name| format!("--set {name}")),
+    );
+    let effects = args.effects.changes.iter().filter(|(_, on)| *on);
+    idle.extend(
+        effects
+            .filter(|(name, _)| EFFECTS_OF_CLOTH.contains(&name.as_str()))
+            .map(|(name, _)| format!("--effects +{name}")),
+    );
+    match idle.first() {
+        Some(flag) => bail!(
+            "{flag}: {} is a volume, no design: leave it out",
+            args.design
+        ),
+        None => Ok(()),
+    }
+}
