@@ -122,13 +122,10 @@ class Flow:
         self.desk.fill("Command to find", "field", typed)
         self.desk.gone("Command to find")
 
-    def told_of_cloth(self):
-        """What the status line says of the picture of the cloth."""
-        return self.desk.sees(" spp · ").name
-
     def passes(self):
-        """Samples a pixel of the cloth that is shown."""
-        return int(re.match(r"(\d+) spp", self.told_of_cloth()).group(1))
+        """Samples a pixel of the cloth that is shown: none at first sight."""
+        node = self.desk.find(" spp · ", part=True)
+        return int(re.match(r"(\d+) spp", node.name).group(1)) if node else 0
 
     # The way.
 
@@ -233,8 +230,8 @@ class Flow:
         desk.key("plus")
         desk.until("a closer look", lambda: seen().unlike(before) > 0.1)
         desk.until("a traced picture", lambda: self.passes() > 0, 240)
-        traced, known = seen(), self.told_of_cloth()
-        desk.until("a better one", lambda: self.told_of_cloth() != known, 240)
+        traced, known = seen(), self.passes()
+        desk.until("a better one", lambda: self.passes() > known, 240)
         desk.until("another picture", lambda: seen().unlike(traced) > 0.005)
 
     def drawn(self, picture):

@@ -273,6 +273,7 @@ impl App {
                 phase: &phase,
                 building: self.preview.building(),
                 paused: self.preview.paused,
+                working: self.preview.working(),
                 hidden: self.preview.is_hidden(),
                 quality: self.preview.quality,
                 export: self.export.progress().or_else(|| self.volume.progress()),

@@ -4,7 +4,8 @@
 use std::path::PathBuf;
 
 use egui::{
-    Button, ComboBox, DragValue, RichText, ScrollArea, TextureHandle, TextureOptions, vec2,
+    Button, ComboBox, DragValue, Key as Pressed, Modifiers, RichText, ScrollArea, TextureHandle,
+    TextureOptions, vec2,
 };
 use pickglass::formats::image::{
     Black, Convention, Corner, ImageAs, ImageError, ImageReading, Key,
@@ -310,9 +311,13 @@ impl Import {
 
     fn buttons_ui(&self, ui: &mut egui::Ui) -> Option<Answer> {
         let mut answer = None;
+        // Enter is the first button's, unless something else has the keyboard.
+        let is_free = ui.memory(|memory| memory.focused().is_none());
+        let entered =
+            is_free && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Pressed::Enter));
         ui.horizontal(|ui| {
             if self.is_picture() {
-                if ui.button("Posterise").clicked() {
+                if ui.button("Posterise").clicked() || entered {
                     answer = Some(Answer::Posterise(self.path.clone()));
                 }
             } else {
@@ -323,7 +328,7 @@ impl Import {
                     _ => None,
                 };
                 let open = ui.add_enabled(ready.is_some(), Button::new("Open it"));
-                if let Some(opened) = ready.filter(|_| open.clicked()) {
+                if let Some(opened) = ready.filter(|_| open.clicked() || entered) {
                     answer = Some(Answer::Open(Box::new(opened.clone())));
                 }
             }

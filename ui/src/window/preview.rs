@@ -1,6 +1,8 @@
 //! The cloth pane: what is looked at and how, what the worker is asked for, and what it
 //! says while it works.
 
+use std::time::Instant;
+
 use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
@@ -84,6 +86,8 @@ pub struct Preview {
     /// What was last asked of the worker, and of which cloth, by [`Laid::cloth`].
     asked: Option<(u64, StillRequest)>,
     generation: u64,
+    /// When the newest picture was asked for.
+    begun: Instant,
     worker: ClothWorker,
     reported_failure: Option<String>,
     /// Whether the pointer or the keyboard is on the cloth.
@@ -118,6 +122,7 @@ impl Preview {
             laid: None,
             asked: None,
             generation: 0,
+            begun: Instant::now(),
             worker: ClothWorker::start(settings.store, move || wake.request_repaint())?,
             reported_failure: None,
             in_use: false,
@@ -266,6 +271,13 @@ impl Preview {
             _ => return false,
         }
         true
+    }
+
+    /// Seconds since the picture was asked for, while the worker is at it.
+    pub fn working(&self) -> Option<f64> {
+        let at_work = matches!(self.worker.phase(), Phase::Preparing | Phase::Refining);
+        let seen = at_work && !self.paused && !self.is_hidden();
+        seen.then(|| self.begun.elapsed().as_secs_f64())
     }
 
     /// Stops drawing until [`Self::resume`].
@@ -483,6 +495,7 @@ impl Preview {
             return;
         }
         self.generation += 1;
+        self.begun = Instant::now();
         self.ask(Aim::Pane, still, laid);
     }
 

@@ -1,5 +1,7 @@
 //! The status line: what is shown, how good it is, and what is under way.
 
+use std::time::Duration;
+
 use egui::{ProgressBar, RichText};
 use pickglass::design::Design;
 
@@ -16,6 +18,8 @@ pub struct Status<'s> {
     pub phase: &'s Phase,
     pub building: Option<Building>,
     pub paused: bool,
+    /// Seconds since the picture was asked for, while it is at work.
+    pub working: Option<f64>,
     /// Refining waits to be seen.
     pub hidden: bool,
     pub quality: Quality,
@@ -92,6 +96,10 @@ fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
             .on_hover_text(why);
     } else if let Some(shown) = status.shown {
         ui.label(quality(shown, status));
+        if status.working.is_some() {
+            // Something moves, however long the next picture takes.
+            ui.ctx().request_repaint_after(Duration::from_secs(1));
+        }
     }
     cancelled
 }
@@ -116,5 +124,12 @@ fn quality(shown: &Shown, status: &Status<'_>) -> String {
         _ if !shown.full_size => " · coarse".to_owned(),
         _ => String::new(),
     };
-    format!("{} spp · {:.1} s{error}{state}", shown.spp, shown.seconds)
+    let seconds = match status.working {
+        Some(seconds) => format!("{seconds:.0} s"),
+        None => format!("{:.1} s", shown.seconds),
+    };
+    match shown.spp {
+        0 if status.working.is_some() => format!("first sight · refining for {seconds}"),
+        spp => format!("{spp} spp · {seconds}{error}{state}"),
+    }
 }

@@ -271,7 +271,7 @@ impl Form {
         egui::Grid::new("volume form")
             .num_columns(2)
             .show(ui, |ui| {
-                let names = ["First end, from the left", "First pick", "Ends", "Picks"];
+                let names = ["First end", "First pick", "Ends", "Picks"];
                 for (name, value) in names.into_iter().zip(&mut self.wanted.region) {
                     let label = ui.label(name);
                     typing::number(ui, DragValue::new(value).range(1..=65_535))

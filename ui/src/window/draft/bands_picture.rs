@@ -1,7 +1,7 @@
 //! Threading, tie-up, treadling and the colour bars drawn.
 
 use egui::{Color32, Mesh, Painter, Rect, Shape, Stroke, pos2, vec2};
-use pickglass::design::{Design, Lifting, YarnId, YarnMap};
+use pickglass::design::{Design, Lifting, Srgb, YarnId, YarnMap};
 
 use super::super::laid;
 use super::areas::{Areas, Loom};
@@ -11,6 +11,8 @@ use crate::tokens::{self, Palette};
 
 /// Marks beyond this number are not drawn: they would be smaller than a pixel.
 const MOST_MARKS: usize = 60_000;
+/// Threads whose mean a pixel of a bar is, at most.
+const MOST_MEANT: usize = 16;
 
 /// Draws all bands.
 pub fn show(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, palette: &Palette) {
@@ -165,12 +167,18 @@ fn veils(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, pal
 /// The yarns of ends and picks.
 fn bars(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, palette: &Palette) {
     let [ends, picks] = grid.visible();
-    // A pixel takes the yarn of its first thread: bars are for painting, not for mixing.
+    // A pixel shows the mean of its threads, as the drawdown does.
     let skip = (1.0 / grid.cell).ceil().max(1.0) as usize;
     let mut mesh = Mesh::default();
-    let colour = |yarn: YarnId| {
-        let colour = design.yarn(yarn).colour;
-        tokens::yarn_colour(colour.0, colour.1, colour.2)
+    let mean = |first: i64, yarn: &dyn Fn(i64) -> YarnId| {
+        let step = (skip / MOST_MEANT).max(1);
+        let threads = (first..first + skip as i64).step_by(step);
+        let count = threads.clone().count().max(1) as f32;
+        let sum = threads
+            .map(|thread| design.yarn(yarn(thread)).colour.to_linear())
+            .reduce(|sum, colour| sum + colour);
+        let Srgb(red, green, blue) = Srgb::from_linear(sum.unwrap_or_default() / count);
+        tokens::yarn_colour(red, green, blue)
     };
     let crossings = |map: &YarnMap| matches!(map, YarnMap::Crossings(_));
     let maps = design.maps();
@@ -180,7 +188,7 @@ fn bars(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, pale
             .intersect(areas.warp_bar);
         let place = place.with_max_x(place.right().max(place.left() + grid.pixel()));
         if !crossings(&maps.warp) && place.is_positive() {
-            mesh.add_colored_rect(place, colour(design.warp_yarn(end, 0)));
+            mesh.add_colored_rect(place, mean(end, &|end| design.warp_yarn(end, 0)));
         }
     }
     for pick in picks.step_by(skip) {
@@ -189,7 +197,7 @@ fn bars(painter: &Painter, grid: &CellGrid, areas: &Areas, design: &Design, pale
             .intersect(areas.weft_bar);
         let place = place.with_max_y(place.bottom().max(place.top() + grid.pixel()));
         if !crossings(&maps.weft) && place.is_positive() {
-            mesh.add_colored_rect(place, colour(design.weft_yarn(0, pick)));
+            mesh.add_colored_rect(place, mean(pick, &|pick| design.weft_yarn(0, pick)));
         }
     }
     painter.add(Shape::mesh(mesh));

@@ -8,6 +8,7 @@ use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
 
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::laid;
 use crate::window::typing;
 
 /// Width of a crossing, points.
@@ -62,7 +63,7 @@ impl Section {
             } else {
                 &mut self.at.0
             };
-            let mut number = *thread + 1;
+            let mut number = numbered(document, self.along_pick, *thread) + 1;
             let label = ui.label("number");
             if typing::number(ui, egui::DragValue::new(&mut number))
                 .labelled_by(label.id)
@@ -98,13 +99,21 @@ impl Section {
                     true => self.at.1,
                     false => self.at.0,
                 };
-                draw(ui, document, cut, self.along_pick, thread + 1);
+                let number = numbered(document, self.along_pick, thread) + 1;
+                draw(ui, document, cut, self.along_pick, number);
             }
             _ => {
                 ui.label(RichText::new("There is no cloth here.").color(quiet));
             }
         }
     }
+}
+
+/// The number of a thread of the endless cloth in the design's file, from 0: counted over the
+/// repeat of the colours, as everywhere.
+fn numbered(document: &Document, along_pick: bool, thread: i64) -> i64 {
+    let (ends, picks) = laid::whole(document.design());
+    thread.rem_euclid(i64::from(if along_pick { picks } else { ends }))
 }
 
 fn draw(ui: &mut egui::Ui, document: &Document, cut: &CrossSection, along_pick: bool, number: i64) {

@@ -8,6 +8,7 @@ use pickglass::formats::presets;
 
 use super::{Pane, Panes};
 use crate::window::action::{Action, Mark};
+use crate::window::laid;
 
 /// A document with its panes, and what they asked for so far.
 struct Bench {
@@ -225,22 +226,25 @@ fn a_picture_becomes_a_design_of_regions() {
 fn the_cut_follows_the_pointer() {
     let mut harness = bench("herringbone", Pane::Section);
     harness.run_steps(2);
-    harness.state_mut().panes.section.follow(Some((4, 8)));
-    harness.run_steps(2);
-    assert!(
-        harness
-            .query_all_by_label_contains("Cut along pick 9")
-            .next()
-            .is_some()
-    );
+    let picks = {
+        let (_, picks) = laid::whole(harness.state().document.design());
+        i64::from(picks)
+    };
+    let told = |harness: &mut Harness<'_, Bench>, at, what: &str| {
+        harness.state_mut().panes.section.follow(Some(at));
+        harness.run_steps(2);
+        let what = format!("Cut along {what}");
+        assert!(
+            harness.query_all_by_label_contains(&what).next().is_some(),
+            "{what}"
+        );
+    };
+    // In every repeat a thread has the number of the file.
+    for repeat in [0, 1, -2] {
+        told(&mut harness, (4, 2 + repeat * picks), "pick 3:");
+    }
     harness.get_by_label("Along an end").click();
-    harness.run_steps(2);
-    assert!(
-        harness
-            .query_all_by_label_contains("Cut along end 5")
-            .next()
-            .is_some()
-    );
+    told(&mut harness, (4, 2), "end 5:");
 }
 
 /// Every pane in both themes and at two densities. Where `PICKGLASS_PICTURES` names a

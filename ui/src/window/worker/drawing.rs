@@ -18,9 +18,11 @@ use super::{Aim, Desk, Fibres, LONGEST, Picture, PreviewRequest};
 pub(super) const PATIENCE: u32 = 4;
 /// Samples a pixel from which a film's own halves tell how noisy it is.
 const LEAST_SAMPLES: u32 = 3;
-/// An old picture serves as it is where its pixels are no larger than the new ones, within
-/// what nobody sees.
+/// An old picture serves as it is where its pixels are as large as the new ones, within what
+/// nobody sees.
 const AS_SHARP: f32 = 0.98;
+/// From further away it would lie in the middle as a patch of another look.
+const AS_LARGE: f32 = 1.02;
 
 /// What is on the screen, to build the next picture on.
 pub(super) struct OnScreen {
@@ -77,12 +79,16 @@ impl OnScreen {
             return None;
         }
         // The eye moved. Colours are those of tracing; where the old picture is as sharp,
-        // it is cut, and where it is coarser, it tells of large places alone.
+        // it is cut, where it is coarser, it tells of large places alone, and where it is
+        // but a part of what is seen now, of no more than the colours.
         let rgba = sight.as_traced(&self.sight, &self.standing.rgba())?;
         let new = Standing::of_rgba(width, height, &rgba)?;
         let Some((corner, scale)) = place_on(&request.design, &self.still, &request.still) else {
             return Some(new);
         };
+        if scale > AS_LARGE {
+            return Some(new);
+        }
         let old = self.standing.seen_from([width, height], corner, scale);
         Some(if scale >= AS_SHARP {
             old.over(&new)
@@ -275,5 +281,85 @@ impl Drawing<'_> {
         }
         drop(shared);
         (self.desk.wake)();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::opened::Opened;
+    use crate::window::worker::Quality;
+
+    const SIZE: [u32; 2] = [64, 48];
+
+    fn request(width_mm: f32) -> PreviewRequest {
+        let design = Opened::preset("oxford").expect("a preset").design;
+        PreviewRequest {
+            generation: 1,
+            aim: Aim::Pane,
+            drawdown: Arc::new(design.weave()),
+            design,
+            still: StillRequest {
+                width: SIZE[0],
+                height: SIZE[1],
+                width_mm: Some(width_mm),
+                centre_mm: Some([0.0; 2]),
+                ..StillRequest::default()
+            },
+            quality: Quality::Good,
+            blank: false,
+        }
+    }
+
+    fn sight(request: &PreviewRequest) -> Sighted {
+        let (design, drawdown) = (Arc::clone(&request.design), Arc::clone(&request.drawdown));
+        let engine = FirstSight::new(design, drawdown, Arc::default());
+        engine
+            .look(&request.still, &Job::new())
+            .expect("first sight")
+    }
+
+    /// What is shown of a view `wider` times as wide as one that was traced, of which
+    /// tracing made one green.
+    fn carried(wider: f32) -> Vec<u8> {
+        const GREEN: [u8; 4] = [30, 200, 60, 255];
+        let (before, mut after) = (request(4.0), request(4.0 * wider));
+        (after.design, after.drawdown) = (before.design.clone(), before.drawdown.clone());
+        let screen = OnScreen {
+            still: before.still.clone(),
+            aim: Aim::Pane,
+            design: Arc::clone(&before.design),
+            drawdown: Arc::clone(&before.drawdown),
+            sight: Arc::new(sight(&before)),
+            standing: Standing::of_rgba(SIZE[0], SIZE[1], &GREEN.repeat(64 * 48)).expect("whole"),
+            traced: true,
+        };
+        let carried = screen.carried(&after, &sight(&after)).expect("known");
+        carried.rgba()
+    }
+
+    /// How uneven the pixels of a part of the picture are, from its middle outwards.
+    fn uneven(rgba: &[u8], within: std::ops::Range<u32>) -> u32 {
+        let greens = (0..SIZE[0] * SIZE[1]).filter_map(|at| {
+            let away = (at % SIZE[0]).abs_diff(SIZE[0] / 2);
+            let beside = (at / SIZE[0]).abs_diff(SIZE[1] / 2);
+            let is_there = within.contains(&(away.max(beside * 4 / 3)));
+            is_there.then(|| u32::from(rgba[at as usize * 4 + 1]))
+        });
+        let (low, high) = greens.fold((255, 0), |(low, high), g| (low.min(g), high.max(g)));
+        high - low
+    }
+
+    #[test]
+    fn from_further_away_the_old_picture_is_no_patch() {
+        let wide = carried(2.0);
+        let (inside, outside) = (uneven(&wide, 0..14), uneven(&wide, 18..32));
+        assert!(
+            inside.abs_diff(outside) <= 12,
+            "the middle is another picture: {inside} {outside}"
+        );
+        // Control: moved by nothing, it is the old picture as it was.
+        assert!(uneven(&carried(1.0), 0..32) <= 1);
+        assert!(outside > 12, "threads are seen: {outside}");
     }
 }
