@@ -20,6 +20,11 @@ pub fn show(ui: &mut egui::Ui, grade: Grade, colour: Color32) {
             stroke,
             &[(0.15, 0.55), (0.4, 0.8), (0.85, 0.25)],
         ),
+        Grade::Note => {
+            painter.circle_stroke(rect.center(), SIDE * 0.46, stroke);
+            lines(painter, rect, stroke, &[(0.5, 0.45), (0.5, 0.78)]);
+            painter.circle_filled(at(rect, (0.5, 0.27)), 1.0, colour);
+        }
         Grade::Warning => {
             let corners = [(0.5, 0.08), (0.96, 0.92), (0.04, 0.92)];
             let corners = corners.map(|corner| at(rect, corner)).to_vec();

@@ -142,7 +142,13 @@ impl App {
         let answer = self.import.as_mut().and_then(|import| import.show(ctx));
         match answer {
             None => return,
-            Some(import::Answer::Open(opened)) => self.files.open_read(ctx, *opened),
+            Some(import::Answer::Open(mut opened)) => {
+                // The form told them beside the cloth that comes of them.
+                for warning in opened.warnings.drain(..) {
+                    self.panes.log.add(Grade::Note, &warning, "");
+                }
+                self.files.open_read(ctx, *opened);
+            }
             Some(import::Answer::Posterise(path)) => self.posterise(ctx, &path),
             Some(import::Answer::Closed) => {}
         }

@@ -1,5 +1,5 @@
-//! Messages: what happened and what was kept. Success passes by itself; warnings and errors
-//! stay until they are dismissed.
+//! Messages: what happened and what was kept. Success and notes pass by themselves; warnings
+//! and errors stay until they are dismissed.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,6 +14,8 @@ use crate::tokens::{self, Palette};
 /// How grave a message is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grade {
+    /// Nothing happened, and why.
+    Note,
     Done,
     Warning,
     Error,
@@ -23,6 +25,7 @@ impl Grade {
     /// The word that stands before a message.
     pub fn word(self) -> &'static str {
         match self {
+            Self::Note => "Note",
             Self::Done => "Done",
             Self::Warning => "Warning",
             Self::Error => "Error",
@@ -52,7 +55,7 @@ const MOST: usize = 4;
 impl Toast {
     /// Seconds until it passes by itself; `None` = never.
     fn left(&self, now: f64) -> Option<f64> {
-        let passes = self.grade == Grade::Done;
+        let passes = matches!(self.grade, Grade::Note | Grade::Done);
         passes.then(|| STAY - (now - self.seen.unwrap_or(now)))
     }
 }
@@ -69,7 +72,7 @@ impl Toasts {
             seen: None,
             made: None,
         });
-        let least = [Grade::Done, Grade::Warning, Grade::Error].into_iter();
+        let least = [Grade::Note, Grade::Done, Grade::Warning, Grade::Error].into_iter();
         let place = |grade: Grade| self.0.iter().position(|toast| toast.grade == grade);
         if self.0.len() > MOST
             && let Some(oldest) = least.filter_map(place).next()
@@ -147,7 +150,7 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
     let palette = Palette::current(ui);
     let word = toast.grade.word();
     let colour = match toast.grade {
-        Grade::Done => palette.text,
+        Grade::Note | Grade::Done => palette.text,
         Grade::Warning => palette.warning,
         Grade::Error => palette.error,
     };
@@ -203,11 +206,13 @@ mod tests {
     fn success_passes_by_itself_and_what_went_wrong_stays() {
         let ctx = egui::Context::default();
         let mut toasts = Toasts::default();
+        toasts.say(Grade::Note, "nothing selected", "");
         toasts.say(Grade::Done, "saved", "");
         toasts.say(Grade::Warning, "cut", "");
         toasts.say(Grade::Error, "lost", "");
-        assert_eq!(after(&mut toasts, &ctx, 10.0), ["saved", "cut", "lost"]);
-        assert_eq!(after(&mut toasts, &ctx, 10.0 + STAY - 0.5).len(), 3);
+        let all = ["nothing selected", "saved", "cut", "lost"];
+        assert_eq!(after(&mut toasts, &ctx, 10.0), all);
+        assert_eq!(after(&mut toasts, &ctx, 10.0 + STAY - 0.5).len(), 4);
         assert_eq!(after(&mut toasts, &ctx, 10.5 + STAY), ["cut", "lost"]);
         assert_eq!(after(&mut toasts, &ctx, 1e4), ["cut", "lost"]);
     }

@@ -371,7 +371,7 @@ impl DraftPane {
 }
 
 fn nothing(text: &str) -> Action {
-    Action::Say(Grade::Warning, text.to_owned(), String::new())
+    Action::Say(Grade::Note, text.to_owned(), String::new())
 }
 
 /// What the history calls a stroke of a tool.
