@@ -311,7 +311,7 @@ pub struct StillArgs {
     /// Width of cloth the picture shows, in mm [default: the view's own]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
     pub mm: Option<f64>,
-    /// Edge of a voxel along x, in mm, of a volume whose file does not say it
+    /// Edge of a voxel along x, in mm, of a volume whose file does not say it or says it wrong
     #[arg(long, value_name = "MM", value_parser = values::positive)]
     pub voxel: Option<f64>,
     /// A light's name, or an equirectangular environment (.exr)
