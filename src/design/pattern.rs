@@ -41,7 +41,7 @@ pub enum SizeError {
         /// Picks asked for.
         picks: u64,
     },
-    /// More ends or picks than [`THREADS`].
+    /// More ends or picks than [`limits::THREADS`].
     #[error(
         "{ends} ends × {picks} picks are too many threads (the most is {THREADS} either way): \
          cut the design into parts"
