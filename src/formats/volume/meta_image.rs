@@ -192,9 +192,9 @@ impl Head {
     /// Refuses a field that was given before, by this name or another, and said other things.
     fn once(&mut self, key: &str, value: &str) -> Result<(), Wrong> {
         let same = SAME.iter().find(|(_, names)| names.contains(&key));
-        let known = FIELDS.fields.iter().map(|field| field.name);
+        let mut known = FIELDS.fields.iter().map(|field| field.name);
         let meaning = same.map(|(meaning, _)| *meaning);
-        let Some(meaning) = meaning.or_else(|| known.into_iter().find(|&name| name == key)) else {
+        let Some(meaning) = meaning.or_else(|| known.find(|&name| name == key)) else {
             return Ok(());
         };
         if let Some((_, name, before)) = self.seen.iter().find(|seen| seen.0 == meaning)

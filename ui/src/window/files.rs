@@ -608,7 +608,6 @@ fn opened(read: anyhow::Result<Opened>) -> FileEvent {
     }
 }
 
-/// The first bytes of a file, which tell what has to be asked about it. Of one that cannot
 /// Writes a design as pages.
 fn print(design: &Design, turned: bool, path: &Path) -> Result<(), String> {
     let options = PdfOptions {
