@@ -1,6 +1,6 @@
 //! One crossing in words.
 
-use pickglass::design::{FaceFloat, Structure, float_through};
+use pickglass::design::{Design, FaceFloat, Structure, float_through};
 use pickglass::edit::Document;
 use pickglass::text::visible;
 
@@ -41,20 +41,25 @@ pub fn describe(document: &Document, (end, pick): (i64, i64), limits: [u32; 2]) 
         }
         _ => String::new(),
     };
-    // Threads are counted over the repeat of the colours, as a warper does.
-    let (ends, picks) = laid::whole(design);
-    let (end, pick) = lattice.wrap(end, pick, ends, picks)?;
-    let (end, pick) = (end + 1, pick + 1);
+    let (end, pick) = numbers(design, (end, pick))?;
     Some(format!(
         "end {end} · pick {pick} · {above} over {below} · {over}{region}"
     ))
+}
+
+/// The numbers, from 1, of the end and the pick that cross at (end, pick) of the endless
+/// cloth: counted over the repeat of the colours, as a warper does; `None` where there is no
+/// cloth.
+pub fn numbers(design: &Design, (end, pick): (i64, i64)) -> Option<(u32, u32)> {
+    let (ends, picks) = laid::whole(design);
+    let (end, pick) = design.lattice().wrap(end, pick, ends, picks)?;
+    Some((end + 1, pick + 1))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::opened::Opened;
-    use pickglass::design::Design;
 
     #[test]
     fn a_crossing_is_told_as_a_weaver_would() {

@@ -8,11 +8,13 @@ use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
 
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
-use crate::window::laid;
+use crate::window::crossing;
 use crate::window::typing;
 
 /// Width of a crossing, points.
 const CROSSING: f32 = 30.0;
+/// Threads that can be asked for from the first.
+const FURTHEST: i64 = 1 << 30;
 
 /// What is cut.
 pub struct Section {
@@ -52,24 +54,33 @@ impl Section {
         }
     }
 
+    /// The number of the thread that is cut, as it is told of the crossing in the middle; where
+    /// there is no cloth, how far it lies from the first.
+    fn number(&self, document: &Document) -> i64 {
+        let (end, pick) = match crossing::numbers(document.design(), self.at) {
+            Some((end, pick)) => (i64::from(end), i64::from(pick)),
+            None => (self.at.0 + 1, self.at.1 + 1),
+        };
+        if self.along_pick { pick } else { end }
+    }
+
     /// Shows the cut.
     pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, _actions: &mut Vec<Action>) {
         let quiet = Palette::current(ui).quiet;
         ui.horizontal_wrapped(|ui| {
             ui.radio_value(&mut self.along_pick, true, "Along a pick");
             ui.radio_value(&mut self.along_pick, false, "Along an end");
-            let thread = if self.along_pick {
-                &mut self.at.1
-            } else {
-                &mut self.at.0
-            };
-            let mut number = numbered(document, self.along_pick, *thread) + 1;
+            let shown = self.number(document);
+            let mut number = shown;
             let label = ui.label("number");
-            if typing::number(ui, egui::DragValue::new(&mut number))
-                .labelled_by(label.id)
-                .changed()
-            {
-                *thread = number - 1;
+            let field = egui::DragValue::new(&mut number).range(-FURTHEST..=FURTHEST);
+            if typing::number(ui, field).labelled_by(label.id).changed() {
+                let thread = if self.along_pick {
+                    &mut self.at.1
+                } else {
+                    &mut self.at.0
+                };
+                *thread += number - shown;
                 self.follows = false;
             }
             ui.checkbox(&mut self.follows, "follow the pointer");
@@ -95,25 +106,13 @@ impl Section {
         }
         match &self.known {
             Some((_, Some(cut))) => {
-                let thread = match self.along_pick {
-                    true => self.at.1,
-                    false => self.at.0,
-                };
-                let number = numbered(document, self.along_pick, thread) + 1;
-                draw(ui, document, cut, self.along_pick, number);
+                draw(ui, document, cut, self.along_pick, self.number(document));
             }
             _ => {
                 ui.label(RichText::new("There is no cloth here.").color(quiet));
             }
         }
     }
-}
-
-/// The number of a thread of the endless cloth in the design's file, from 0: counted over the
-/// repeat of the colours, as everywhere.
-fn numbered(document: &Document, along_pick: bool, thread: i64) -> i64 {
-    let (ends, picks) = laid::whole(document.design());
-    thread.rem_euclid(i64::from(if along_pick { picks } else { ends }))
 }
 
 fn draw(ui: &mut egui::Ui, document: &Document, cut: &CrossSection, along_pick: bool, number: i64) {

@@ -2,13 +2,13 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use pickglass::design::Structure;
+use pickglass::design::{Lattice, Repeat, Structure};
 use pickglass::edit::{Document, Edit};
 use pickglass::formats::presets;
 
 use super::{Pane, Panes};
 use crate::window::action::{Action, Mark};
-use crate::window::laid;
+use crate::window::{crossing, laid};
 
 /// A document with its panes, and what they asked for so far.
 struct Bench {
@@ -245,6 +245,34 @@ fn the_cut_follows_the_pointer() {
     }
     harness.get_by_label("Along an end").click();
     told(&mut harness, (4, 2), "end 5:");
+}
+
+#[test]
+fn the_cut_numbers_threads_as_the_status_line_does() {
+    let mut harness = bench("herringbone", Pane::Section);
+    let half = Lattice {
+        across: Repeat::Dropped(3),
+        along: Repeat::Straight,
+    };
+    let document = &mut harness.state_mut().document;
+    document.apply(Edit::SetLattice(half)).expect("a lattice");
+    let (ends, picks) = laid::whole(document.design());
+    // A repeat further along the weft, where the weave stands three picks higher.
+    let at = (i64::from(ends) + 4, 5);
+    let status = crossing::describe(document, at, [7; 2]).expect("cloth");
+    assert!(status.starts_with("end 5 · pick 3 · "), "{status}");
+    harness.state_mut().panes.section.follow(Some(at));
+    harness.run_steps(2);
+    assert!(
+        (harness.query_all_by_label_contains("Cut along pick 3:"))
+            .next()
+            .is_some()
+    );
+    // Below the first pick of a shifted repeat is the last of the one beneath.
+    harness.state_mut().panes.section.follow(Some((at.0, 2)));
+    harness.run_steps(2);
+    let last = format!("Cut along pick {picks}:");
+    assert!(harness.query_all_by_label_contains(&last).next().is_some());
 }
 
 /// Every pane in both themes and at two densities. Where `PICKGLASS_PICTURES` names a
