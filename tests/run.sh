@@ -14,6 +14,7 @@ cd "$(dirname "$0")/.."
 
 target=${CARGO_TARGET_DIR:-$PWD/target}
 passed=()
+took=()
 missing=()
 started=$SECONDS
 
@@ -29,6 +30,7 @@ step() {
     "$@"
     say "   $name: passed, $((SECONDS - begun)) s"
     passed+=("$name")
+    took+=("$((SECONDS - begun))")
 }
 
 lacks() {
@@ -247,15 +249,27 @@ smoke_no_display() {
 
 # Builds the program as well: `cargo build` alone would give the library other features of
 # its dependencies than the tests need, and all of it would be built twice.
+build_tests() {
+    cargo test --release --workspace --no-run --quiet
+}
+
+# Of what passes one line a program is printed, of what fails all.
 run_tests() {
-    cargo test --release --workspace --quiet --no-fail-fast
+    local log=$scratch/tests.log status=0
+    cargo test --release --workspace --no-fail-fast >"$log" 2>&1 || status=$?
+    if ((status)); then
+        grep -vE '^test .*[.]{3} ok$' "$log"
+        return "$status"
+    fi
+    awk '/^ +(Running|Doc-tests) / { name = $2 == "unittests" ? $3 : $2 }
+        /^test result: / { printf "%8s s %5d tests  %s\n", $NF + 0, $4, name }' "$log" | sort -rn
 }
 
 # The table of asked and shown colours, which the tests alone do not print.
 print_colours() {
     # For the workspace, as all else: one package alone has other features of its
     # dependencies, and everything would be built again.
-    cargo test --release --workspace --test cloth_colour --quiet -- --nocapture
+    cargo test --release --workspace --test cloth --quiet -- --nocapture colour::
 }
 
 run_docs() {
@@ -267,6 +281,7 @@ check_all() {
     if component clippy clippy; then
         step "lints" cargo clippy --release --workspace --all-targets --quiet -- -D warnings
     fi
+    step "build of the tests" build_tests
     step "tests" run_tests
     step "colours" print_colours
     step "documentation" run_docs
@@ -354,6 +369,9 @@ else
 fi
 
 say
+for index in "${!passed[@]}"; do
+    printf '%6d s  %s\n' "${took[$index]}" "${passed[$index]}"
+done
 ((${#missing[@]} == 0)) || printf 'missing: %s\n' "${missing[@]}"
 printf -v list '%s, ' "${passed[@]}"
 say "passed in $((SECONDS - started)) s: ${list%, }"

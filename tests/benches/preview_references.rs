@@ -6,7 +6,7 @@
 //! of two cores. The random numbers are not those of a preview: the frame is four pixels wider,
 //! and cut.
 
-#[path = "../preview_views/mod.rs"]
+#[path = "../common/preview_views/mod.rs"]
 mod preview_views;
 
 use pickglass::exemplar::ExemplarStore;

@@ -10,7 +10,7 @@
 //! compiled variant name LLVM in `DRJIT_LIBLLVM_PATH`. `quick` in the arguments leaves
 //! out the peer, `exemplars`, `procedural`, `silk` or `wool` all other grids.
 
-#[path = "../render_scenes/mod.rs"]
+#[path = "../common/render_scenes/mod.rs"]
 mod render_scenes;
 
 use std::path::Path;

@@ -14,7 +14,7 @@ use super::drawing::{Drawing, OnScreen};
 use super::{Aim, Desk, Fibres, Picture, PreviewRequest, Quality, Shared};
 use preview_views::{PreviewView, SIZE, reference, squares, visits};
 
-#[path = "../../../../tests/preview_views/mod.rs"]
+#[path = "../../../../tests/common/preview_views/mod.rs"]
 mod preview_views;
 
 /// What a picture may be worse than the least so far.

@@ -1,0 +1,15 @@
+//! The implicit volume: seams, bounds, walks, hairs, levels, colours.
+
+#[path = "../common/cloth_scenes/mod.rs"]
+mod cloth_scenes;
+
+mod colour;
+mod edit;
+mod families;
+mod hairs;
+mod hard_cases;
+mod interlacing;
+mod levels;
+mod majorants;
+mod seams;
+mod walk;

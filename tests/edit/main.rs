@@ -1,0 +1,8 @@
+//! Changes, undo and recovery.
+
+#[path = "../common/memory/mod.rs"]
+mod memory;
+
+mod history;
+mod properties;
+mod recovery;

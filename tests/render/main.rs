@@ -1,0 +1,14 @@
+//! The tracer: tracking, fibres, films, denoising, stills and first sight.
+
+#[path = "../common/picture_likeness/mod.rs"]
+mod picture_likeness;
+#[path = "../common/render_scenes/mod.rs"]
+mod render_scenes;
+
+mod denoise;
+mod film;
+mod first_sight;
+mod follow;
+mod sggx;
+mod still;
+mod tracking;
