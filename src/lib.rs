@@ -13,33 +13,45 @@
 //! | folder | what it is | imports |
 //! |---|---|---|
 //! | [`hash`] | a stable hash of what is said | – |
+//! | [`random`] | random numbers that are a hash of where they are used | `hash` |
 //! | [`job`] | progress, cancelling, deadlines | – |
 //! | [`limits`] | sizes beyond which nothing is tried | – |
 //! | [`memory`] | one budget for what files and users ask for | – |
 //! | [`text`] | texts of files, made safe to show | – |
+//! | [`atomic`] | files that are written whole or not at all | – |
 //! | [`design`] | what is made: weave, yarns, sett, repeat | `hash` `job` `limits` `memory` |
 //! | [`yarn`] | yarn recipes: curves and fibres | `hash` `limits` `design` |
 //! | [`synthesis`] | which block each crossing copies | `hash` `job` `design` |
-//! | [`exemplar`] | voxels to copy from | `job` `limits` `memory` `yarn` `synthesis` *`formats`* |
-//! | [`render`] | traces any medium into a film | `hash` `job` *`formats`* |
-//! | [`volume`] | voxels in a grid, as a medium | `render` |
-//! | [`cloth`] | the implicit volume of a design | `job` `design` `yarn` `synthesis` `exemplar` `render` `volume` |
-//! | [`edit`] | changes, undo, recovery | `design` *`formats`* |
+//! | [`exemplar`] | voxels to copy from | `job` `limits` `memory` `atomic` `design` `yarn` `synthesis` |
+//! | [`scene`] | rays, cameras, lights, skies | `random` |
+//! | [`film`] | sums of paths, their error, the picture made of them | `job` `scene` |
+//! | [`render`] | traces any medium into a film | `random` `job` `scene` `film` |
+//! | [`volume`] | voxels in a grid, as a medium | `scene` `render` |
+//! | [`cloth`] | the implicit volume of a design | `random` `job` `design` `yarn` `synthesis` `exemplar` `scene` `render` `volume` |
 //! | [`posterise`] | a photograph becomes weaves | `job` `memory` `design` `cloth` |
-//! | [`formats`] | files of other programs and our own | `job` `limits` `memory` `text` `design` `yarn` `render` `volume` |
-//! | [`still`] | a design becomes a picture | `job` `memory` `design` `synthesis` `exemplar` `render` `volume` `cloth` `formats` |
+//! | [`formats`] | files of other programs and our own | `job` `limits` `memory` `text` `atomic` `design` `yarn` `scene` `film` `volume` |
+//! | [`edit`] | changes, undo, recovery | `atomic` `design` `formats` |
+//! | [`mod@print`] | a design as PDF | `text` `design` |
+//! | [`presets`] | designs inside the program | `design` `formats` |
+//! | [`still`] | a design becomes a picture | `random` `job` `memory` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` |
 
+pub mod atomic;
 pub mod cloth;
 pub mod design;
 pub mod edit;
 pub mod exemplar;
+pub mod film;
 pub mod formats;
 pub mod hash;
 pub mod job;
 pub mod limits;
 pub mod memory;
 pub mod posterise;
+pub mod presets;
+pub mod print;
+pub mod random;
 pub mod render;
+pub mod scene;
 pub mod still;
 pub mod synthesis;
 pub mod text;

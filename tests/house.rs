@@ -12,7 +12,7 @@ use std::path::Path;
 use syn::visit::{self, Visit};
 
 /// Files of the library that stand in a circle of imports. It may fall, never grow.
-const MOST_IN_CIRCLES: usize = 93;
+const MOST_IN_CIRCLES: usize = 77;
 
 /// Names from the root of the crate to a module.
 type Module = Vec<String>;
@@ -175,6 +175,10 @@ impl<'ast> Visit<'ast> for Names<'_> {
         if !for_tests(&item.attrs) {
             visit::visit_item_impl(self, item);
         }
+    }
+
+    fn visit_visibility(&mut self, _: &'ast syn::Visibility) {
+        // Who may see a thing is not what it needs.
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
@@ -346,6 +350,7 @@ fn table(documentation: &str) -> Vec<Row> {
         let mut cells = line.split('|').map(str::trim);
         let (folder, _, imports) = (cells.next()?, cells.next()?, cells.next()?);
         let folder = folder.strip_prefix("[`")?.strip_suffix("`]")?;
+        let folder = folder.trim_start_matches("mod@");
         let names = |italic: bool| {
             let words = imports.split_whitespace();
             let words = words.filter(move |word| word.starts_with('*') == italic || *word == "–");

@@ -14,8 +14,10 @@ use serde::{Deserialize, Serialize};
 use super::build::ClothVolume;
 use crate::design::{Family, Positions, Yarn};
 use crate::job::{Cancelled, Job};
+use crate::random::Random;
 use crate::render::path::{ByOrder, Path, Plane};
-use crate::render::{Counters, Dark, Random, Ray, RenderSettings, Stack, Sun};
+use crate::render::{Counters, RenderSettings, Stack};
+use crate::scene::{Dark, Ray, Sun};
 
 /// Nodes of a stored curve, equally spaced in s = √(1−ω) from 0 to 1: R is smooth in s.
 pub const NODES: usize = 25;

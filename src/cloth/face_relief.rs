@@ -8,10 +8,10 @@
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::design::WeavePattern;
+use crate::design::{Direction, WeavePattern};
 use crate::exemplar::{Pair, layout};
 use crate::synthesis::{Catalogue, KEYS, Side, key_of};
-use crate::yarn::{Direction, WeaveGeometry};
+use crate::yarn::WeaveGeometry;
 
 /// Texels along a crossing's side at the finest level.
 pub const TEXELS: usize = 12;

@@ -10,7 +10,7 @@
 use glam::Vec3;
 
 use super::face_relief::{AZIMUTHS, FaceRelief, Spot, TEXELS};
-use crate::render::{Environment, LightRig, Sky, luminance};
+use crate::scene::{Environment, LightRig, Sky, luminance};
 use crate::synthesis::KEYS;
 
 /// Texels along a side, level by level.

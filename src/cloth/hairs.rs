@@ -12,7 +12,8 @@ use super::hair_cells::{HairCell, HairCells};
 use crate::design::Yarn;
 use crate::exemplar::hairs::{HAIRLESS, HairPatch, root_step};
 use crate::exemplar::{CELL, cell_of};
-use crate::render::{Bounds, MajorantWalk, Medium, Ray, SYSTEM, Stretch, Voxel};
+use crate::render::{MajorantWalk, Medium, SYSTEM, Stretch, Voxel};
+use crate::scene::{Bounds, Ray};
 use crate::yarn::{WeaveGeometry, YarnRecipe};
 
 /// Most cells that one walk visits.
@@ -126,7 +127,7 @@ fn pitch(cloth: &ClothVolume) -> Vec2 {
 
 /// Crown heights of a plain weave of these yarns, front and back: weft up, warp up.
 fn crowns(warp: &YarnRecipe, weft: &YarnRecipe, pitch: Vec2) -> [[f32; 2]; 2] {
-    use crate::yarn::Direction;
+    use crate::design::Direction;
     let plain = crate::design::WeavePattern::from_fn(2, 2, |end, pick| (end + pick) % 2 == 0);
     let weave = WeaveGeometry::new(&plain, warp, weft, pitch, 0);
     let height = |direction, index: usize, upper| {

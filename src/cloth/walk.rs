@@ -7,7 +7,8 @@ use super::build::ClothVolume;
 use super::levels::series;
 use super::lookup::Crossing;
 use crate::exemplar::{CELL, cell_of};
-use crate::render::{Arrival, Bounds, MajorantWalk, Medium, PLACE, Ray, Stretch, Voxel};
+use crate::render::{Arrival, MajorantWalk, Medium, PLACE, Stretch, Voxel};
+use crate::scene::{Bounds, Ray};
 
 /// Half the side of the largest cloth, mm: rays leave it at last.
 pub const REACH_MM: f32 = 4000.0;

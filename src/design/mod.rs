@@ -32,6 +32,7 @@ mod colour;
 mod colourways;
 mod count;
 mod derive;
+mod direction;
 mod document;
 mod draft;
 mod floats;
@@ -56,6 +57,7 @@ pub use colour::{Lab, delta_e_00, lab};
 pub use colourways::{Colourway, ColourwayError, MAX_COLOURWAYS};
 pub use count::CountUnit;
 pub use derive::{DeriveError, Loom, derive, shafts_needed};
+pub use direction::Direction;
 pub use document::{
     Design, DesignError, FirstEnd, FirstPick, ForeignSection, Origin, StatedThreads, usual_sett,
 };

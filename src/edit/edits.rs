@@ -5,17 +5,9 @@ use super::document::Work;
 use super::error::EditError;
 use super::{colourways, crossings, drafts, regions, threads, whole};
 use crate::design::{
-    Design, Fill, Grid, Lattice, Region, RegionYarns, Sett, Shed, WeavePattern, Yarn, YarnId,
+    Design, Direction, Fill, Grid, Lattice, Region, RegionYarns, Sett, Shed, WeavePattern, Yarn,
+    YarnId,
 };
-
-/// One of the two directions of a cloth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// Ends, along the cloth.
-    Warp,
-    /// Picks, across it.
-    Weft,
-}
 
 /// New sets for some places: (place, members), ends with their shafts for instance. All
 /// count from 0.

@@ -37,7 +37,7 @@ mod whole;
 pub use cells::{Cells, Rect};
 pub use change::{Change, Touched};
 pub use document::Document;
-pub use edits::{Direction, Edit, Rows};
+pub use edits::{Edit, Rows};
 pub use error::EditError;
 pub use history::{Entry, HISTORY_BYTES};
 pub use selection::{Clip, Picked, moved, picked};

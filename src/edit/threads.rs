@@ -1,10 +1,11 @@
 //! Yarns and the threads that are of them.
 
 use super::document::Work;
-use super::edits::Direction;
 use super::error::EditError;
 use super::regions;
-use crate::design::{Colourway, Design, RegionYarns, Structure, Yarn, YarnId, YarnMap, YarnMaps};
+use crate::design::{
+    Colourway, Design, Direction, RegionYarns, Structure, Yarn, YarnId, YarnMap, YarnMaps,
+};
 
 /// Refuses a yarn that is not there.
 pub(super) fn check(design: &Design, yarn: YarnId) -> Result<(), EditError> {

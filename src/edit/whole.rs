@@ -6,12 +6,11 @@
 //! which are part of the drawing. A region's weave runs on from its origin.
 
 use super::document::Work;
-use super::edits::Direction;
 use super::error::EditError;
 use super::turn::{Turn, turned};
 use crate::design::{
-    Corrections, Density, Design, Draft, Fill, Filled, Grid, Lattice, Lifting, Regions, Repeat,
-    Sett, Structure, Ties, WeavePattern, YarnId, YarnMap, YarnMaps, check_size,
+    Corrections, Density, Design, Direction, Draft, Fill, Filled, Grid, Lattice, Lifting, Regions,
+    Repeat, Sett, Structure, Ties, WeavePattern, YarnId, YarnMap, YarnMaps, check_size,
 };
 
 /// Threads per length; everything else stays.

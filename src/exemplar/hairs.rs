@@ -8,7 +8,8 @@ use glam::{Vec2, Vec3};
 
 use super::bricks::{BRICK, BrickVolume, PackedVoxel, cell_of};
 use super::majorants::CELL;
-use crate::yarn::{Direction, YarnRecipe, hash, unit};
+use crate::design::Direction;
+use crate::yarn::{YarnRecipe, hash, unit};
 
 /// Crossings along a side of the patch.
 pub const PATCH: usize = 16;

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use super::bricks::BrickVolume;
 use super::voxelise::VoxelGrid;
+use crate::design::Direction;
 use crate::synthesis::{Catalogue, EdgeHeights, Face, Place, Side};
-use crate::yarn::{Direction, WeaveGeometry};
+use crate::yarn::WeaveGeometry;
 
 /// Standard deviation of the smoothing along an edge, mm: fibres are 10–20 µm thick.
 const SMOOTHING_MM: f32 = 0.015;

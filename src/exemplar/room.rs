@@ -4,13 +4,12 @@
 //! The limit stands in the folder itself, so that the window and the command line keep the
 //! same.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+use std::{fs, io};
 
 use super::store::ExemplarStore;
-use crate::formats::atomic;
+use crate::atomic;
 
 /// Bytes that the folder may hold where nobody said otherwise.
 pub const USUAL_LIMIT: u64 = 2_000_000_000;

@@ -20,10 +20,9 @@ use super::lobes::Lobes;
 use super::room::{ENDING, USUAL_LIMIT};
 use super::set::{ExemplarError, ExemplarSet, Pair, build_exemplar};
 use super::voxelise::VoxelGrid;
-use crate::formats::atomic;
 use crate::job::{Cancelled, Job};
-use crate::memory;
 use crate::synthesis::Catalogue;
+use crate::{atomic, memory};
 
 /// Changes whenever exemplars built from the same recipe change.
 const FORMAT: u32 = 7;

@@ -11,9 +11,10 @@ use rayon::prelude::*;
 use super::bricks::{BRICK, BrickVolume, PackedVoxel};
 use super::lobes::Lobes;
 use super::set::Pair;
+use crate::design::Direction;
 use crate::job::{Cancelled, Job};
 use crate::yarn::fibre::{self, FibreLayout};
-use crate::yarn::{Direction, WeaveGeometry, YarnRecipe};
+use crate::yarn::{WeaveGeometry, YarnRecipe};
 
 /// The grid of one exemplar.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -14,17 +14,18 @@ use std::num::IntErrorKind;
 use super::encoding::decode;
 use super::field_table::Handling::{Honoured, Warned};
 use super::field_table::{Field, Table};
+use super::sheet::text::{lines, shorten};
+use super::sheet::threads::Threads;
 use super::sheet::{
     Misfit, Place, Sheet, SheetError, StandIns, Warnings, at_least, colours, tieup_or_plan,
     warn_unused_threads, without_path,
 };
-use super::wif::MAX_THREADS;
-use super::wif::text::{lines, shorten};
-use super::wif::threads::{Direction, Threads};
 use super::{Imported, LoadOptions};
 use crate::design::{
-    Draft, FirstEnd, FirstPick, Lifting, MAX_SHAFTS, Shed, Srgb, Structure, Ties, check_size,
+    Direction, Draft, FirstEnd, FirstPick, Lifting, MAX_SHAFTS, Shed, Srgb, Structure, Ties,
+    check_size,
 };
+use crate::limits::DRAFT_THREADS as MAX_THREADS;
 
 /// How every file begins.
 const MAGIC: &[u8] = b"@@StartDTX";

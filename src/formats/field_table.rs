@@ -46,20 +46,3 @@ pub struct Table {
     /// Its fields.
     pub fields: &'static [Field],
 }
-
-/// The tables of all readers.
-pub fn tables() -> Vec<Table> {
-    let mut tables = vec![
-        super::wif::FIELDS,
-        super::dtx::FIELDS,
-        super::wpo::FIELDS,
-        super::dbw::FIELDS,
-        super::jc5::FIELDS,
-        super::volume::VOL_FIELDS,
-        super::volume::NRRD_FIELDS,
-        super::volume::META_IMAGE_FIELDS,
-        super::exr::FIELDS,
-    ];
-    tables.extend(super::image::TABLES);
-    tables
-}

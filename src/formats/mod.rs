@@ -6,10 +6,8 @@
 //! `wpo` and `dbw` the files of drafting programs, `jc5` those of jacquard looms, `image`
 //! all kinds of images, `photo` any picture that is to be posterised; `sheet` is what
 //! drafts have in common. `volume` takes cloth out as voxels and reads them in, `yarns` takes
-//! it out as curves and tubes. `atomic` writes files so that nothing is ever half-written,
-//! `output` says beforehand whether that can and may be done.
+//! it out as curves and tubes. `output` says beforehand whether a file can and may be written.
 
-pub mod atomic;
 pub mod dbw;
 pub mod dtx;
 mod encoding;
@@ -18,10 +16,9 @@ pub mod field_table;
 pub mod image;
 pub mod jc5;
 pub mod output;
-pub mod pdf;
 pub mod photo;
 pub mod png;
-pub mod presets;
+mod reading;
 pub mod ron;
 mod sheet;
 pub mod volume;
@@ -29,35 +26,16 @@ pub mod wif;
 pub mod wpo;
 pub mod yarns;
 
+use reading::stem;
+pub use reading::{Imported, LoadOptions};
 pub use sheet::{Place, SheetError};
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::design::{Density, Design, Family, Sett};
-use image::{Black, Corner, Encoding, ImageContent, ImageFormat, ImageReading};
-
-/// A design that was read, and what the reader had to decide for itself.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Imported {
-    /// The design.
-    pub design: Design,
-    /// One line each: what was odd in the file and what was made of it.
-    pub warnings: Vec<String>,
-}
-
-/// What the person who opens a file knows better than the file.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct LoadOptions {
-    /// Ends and picks per cm, instead of the file's.
-    pub sett: Option<(f32, f32)>,
-    /// What yarns are made of where the file does not say; `None` = cotton.
-    pub family: Option<Family>,
-    /// Loom files are woven face down: what they lift shows on the back.
-    pub face_down: bool,
-    /// How an image is read.
-    pub image: ImageReading,
-}
+use crate::atomic;
+use crate::design::{Density, Design, Sett};
+use image::{Black, Corner, Encoding, ImageContent, ImageFormat};
 
 /// A file that could not be opened as a design: one line with the file, the place, what
 /// was expected and what to do.
@@ -225,6 +203,23 @@ pub fn load_bytes(
     }
 }
 
+/// The fields that change what is read, one table a reader.
+pub fn field_tables() -> Vec<field_table::Table> {
+    let mut tables = vec![
+        wif::FIELDS,
+        dtx::FIELDS,
+        wpo::FIELDS,
+        dbw::FIELDS,
+        jc5::FIELDS,
+        volume::VOL_FIELDS,
+        volume::NRRD_FIELDS,
+        volume::META_IMAGE_FIELDS,
+        exr::FIELDS,
+    ];
+    tables.extend(image::TABLES);
+    tables
+}
+
 /// Images that say which yarn lies where.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct MapFiles {
@@ -358,15 +353,6 @@ const LOOM_FORMATS: [(Recogniser, LoomReader); 4] = [
     (dbw::recognises, dbw::read),
     (jc5::recognises, jc5::read),
 ];
-
-/// A file's name without folders and ending.
-fn stem(name: &str) -> String {
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    match last.rsplit_once('.') {
-        Some((stem, _)) if !stem.is_empty() => stem.to_owned(),
-        _ => last.to_owned(),
-    }
-}
 
 /// A design at the sett somebody asked for; unequal spacings keep their ratios.
 fn with_options(design: Design, name: &str, options: &LoadOptions) -> Result<Design, FormatError> {

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::atomic::{self, WriteError, folder_of};
+use crate::atomic::{self, WriteError, folder_of};
 
 /// A place that nothing can or shall be written to.
 #[derive(Debug, thiserror::Error)]

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::atomic;
+use crate::atomic;
+use crate::film::Picture;
 
 /// Bits per channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -12,17 +13,6 @@ pub enum Depth {
     Eight,
     /// 16 bits.
     Sixteen,
-}
-
-/// A picture ready for display: sRGB-encoded RGB and alpha in 0..=1, top row first.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// `width`·`height` pixels, colour not premultiplied.
-    pub pixels: Vec<[f32; 4]>,
 }
 
 /// What a still says about itself.

@@ -20,12 +20,14 @@
 
 use super::field_table::Handling::{Honoured, Warned};
 use super::field_table::{Field, Table};
+use super::sheet::threads::Threads;
 use super::sheet::{
     Misfit, Place, Sheet, SheetError, StandIns, Warnings, at_least, colours, warn_unused_threads,
 };
-use super::wif::threads::{Direction, Threads};
 use super::{Imported, LoadOptions};
-use crate::design::{Draft, FirstEnd, FirstPick, Lifting, Shed, Srgb, Structure, Ties, check_size};
+use crate::design::{
+    Direction, Draft, FirstEnd, FirstPick, Lifting, Shed, Srgb, Structure, Ties, check_size,
+};
 
 /// The latest version whose layout is known.
 const KNOWN_VERSION: u8 = 7;

@@ -10,10 +10,9 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use serde_json::{Value, json};
 
-use super::atomic::{Pending, WriteError};
-use crate::design::{Design, YarnId};
+use crate::atomic::{Pending, WriteError};
+use crate::design::{Design, Direction, YarnId};
 use crate::job::{Cancelled, Job};
-use crate::yarn::Direction;
 use crate::yarn::tubes::{ROUND, YarnTube};
 
 /// Yarns that could not be written.

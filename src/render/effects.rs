@@ -3,12 +3,12 @@
 //! [`with_path`] looks at the settings and hands a [`Path`] of the fitting type to the
 //! work that follows paths, so that nothing that is off is asked about along the way.
 
-use super::environment::{Dark, Environment};
-use super::light::{LightRig, Sky};
 use super::path::{Path, Plane};
 use super::settings::{Backing, RenderSettings};
 use super::stack::Stack;
 use super::track::Scatterer;
+use crate::scene::environment::{Dark, Environment};
+use crate::scene::light::{LightRig, Sky};
 
 /// Work that needs to follow paths, whatever their type.
 pub trait WithPath {

@@ -9,14 +9,14 @@ use rayon::prelude::*;
 
 use super::counters::Counters;
 use super::effects::{WithPath, with_path};
-use super::environment::Environment;
-use super::light::LightRig;
-use super::medium::Ray;
 use super::path::{ByOrder, Path};
-use super::random::Random;
 use super::settings::RenderSettings;
 use super::track::Scatterer;
 use crate::job::{Cancelled, Job};
+use crate::random::Random;
+use crate::scene::Ray;
+use crate::scene::environment::Environment;
+use crate::scene::light::LightRig;
 
 /// Paths in one task; part of the definition of the result, as sums of sums depend on it.
 const CHUNK: u64 = 1024;

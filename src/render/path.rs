@@ -9,13 +9,14 @@ use glam::Vec3;
 use std::f32::consts::PI;
 
 use super::counters::Counters;
-use super::environment::{Environment, luminance};
-use super::film::{FirstHit, Sample};
-use super::light::Sun;
-use super::medium::{Arrival, PLACE, Ray, SYSTEM};
-use super::random::Random;
+use super::medium::{Arrival, PLACE, SYSTEM};
 use super::settings::Background;
 use super::track::{SECOND, Scatterer};
+use crate::film::{FirstHit, Sample};
+use crate::random::Random;
+use crate::scene::Ray;
+use crate::scene::environment::{Environment, luminance};
+use crate::scene::light::Sun;
 
 /// A diffusing sheet behind the cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -168,7 +169,7 @@ impl Vertex {
         match self {
             Self::Fibre(fibre, ..) => fibre.sample(wi, u),
             Self::Sheet(facing) => {
-                let (x, y) = super::random::disk(u);
+                let (x, y) = crate::random::disk(u);
                 let z = (1.0 - x * x - y * y).max(1e-6).sqrt();
                 Vec3::new(x, y, z * facing).normalize_or(Vec3::Z)
             }

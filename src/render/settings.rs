@@ -55,7 +55,7 @@ pub struct RenderSettings {
     pub pass_spp: u32,
     /// Samples per pixel after which the picture is done. Crude 1, reference 4096.
     pub spp: u32,
-    /// Error (see [`super::error`]) below which the picture is done; 0 = go on to `spp`.
+    /// Error (see [`crate::film::error`]) below which the picture is done; 0 = go on to `spp`.
     pub error: f32,
     /// What lies behind the cloth.
     pub backing: Backing,

@@ -11,7 +11,7 @@
 use glam::Vec3;
 use std::f32::consts::PI;
 
-use super::random::disk;
+use crate::random::disk;
 
 /// The smallest roughness: below it D is a needle that light sampling cannot hit.
 pub const ALPHA_FLOOR: f32 = 0.01;

@@ -4,9 +4,10 @@
 use glam::Vec3;
 
 use super::counters::Counters;
-use super::medium::{Arrival, Bounds, Ray};
-use super::random::Random;
+use super::medium::Arrival;
 use super::track::{Collision, Scatterer};
+use crate::random::Random;
+use crate::scene::{Bounds, Ray};
 
 /// Copies of a scatterer, the top one in its own place and the others below it.
 ///

@@ -4,18 +4,18 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use super::camera::Camera;
 use super::counters::Counters;
 use super::effects::{WithPath, with_path};
-use super::environment::Environment;
-use super::error::{ErrorEstimate, estimate};
-use super::film::{Film, Pixel};
-use super::light::LightRig;
 use super::path::{Path, Total};
-use super::random::Random;
 use super::settings::RenderSettings;
 use super::track::Scatterer;
+use crate::film::error::{ErrorEstimate, estimate};
+use crate::film::{Film, Pixel};
 use crate::job::{Cancelled, Job};
+use crate::random::Random;
+use crate::scene::camera::Camera;
+use crate::scene::environment::Environment;
+use crate::scene::light::LightRig;
 
 /// Rows that one task takes; their pixels are visited in squares of this edge.
 const TILE: u32 = 8;

@@ -11,9 +11,10 @@
 use glam::Vec3;
 
 use super::counters::Counters;
-use super::medium::{Arrival, Bounds, MajorantWalk, Medium, Ray, Voxel};
-use super::random::{Random, free_path};
+use super::medium::{Arrival, MajorantWalk, Medium, Voxel};
 use super::sggx::Fibre;
+use crate::random::{Random, free_path};
+use crate::scene::{Bounds, Ray};
 
 /// Tentative collisions after which a walk is given up and counted. A walk through a
 /// cloth needs tens, a grazing one hundreds; 2¹⁴ is reached only where the extinction is

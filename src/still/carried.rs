@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use super::picture::byte;
 use crate::design::{Yarn, YarnId};
 use crate::exemplar::Pair;
-use crate::render::tone::{decode_srgb, encode_srgb};
+use crate::film::tone::{decode_srgb, encode_srgb};
 use crate::synthesis::KEYS;
 
 /// Cells along a crossing's side in which what was seen is told apart.

@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 
 use super::{StillRequest, effects};
+use crate::film::{Denoise, Film, Sample, Tone};
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::render::{Denoise, Film, Random, Sample, Tone};
+use crate::random::Random;
 
 /// Pixels that are measured.
 const MEASURED: u32 = 1 << 16;

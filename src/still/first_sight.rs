@@ -21,8 +21,10 @@ use crate::cloth::colour::colours_on_top;
 use crate::cloth::{FaceRelief, FaceTable, YarnClasses};
 use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
+use crate::film::Tone;
 use crate::job::Job;
-use crate::render::{Backing, Camera, Tone, View};
+use crate::render::Backing;
+use crate::scene::{Camera, View};
 use crate::synthesis::{Catalogue, Side, key_of};
 
 /// Samples a pixel, each way, where crossings are smaller than pixels.

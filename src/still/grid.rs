@@ -4,12 +4,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::finishing;
 use super::picture::{Pass, Shot, Still, Subject, ask_for_picture, camera_at, lights, settings};
-use super::{EffectBase, EffectChoice, StillError, StillRequest};
+use super::{EffectBase, EffectChoice, StillError, StillRequest, finishing};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
-use crate::render::{Background, Bounds, Camera};
+use crate::scene::{Bounds, Camera};
 use crate::volume::Taps;
 use crate::volume::source::Frame;
 
@@ -82,12 +81,13 @@ pub fn scene_files(
     frame: &Frame,
     request: &StillRequest,
 ) -> Result<Vec<Attachment>, StillError> {
-    let (_, mut settings, _) = settings(request)?;
-    settings.background = Background::Sky;
+    let (_, settings, _) = settings(request)?;
     let scene = mitsuba::Scene {
         camera: &camera_over(frame.bounds(), request)?,
         lights: &lights(&request.light, request.view, request.turned)?,
-        settings: &settings,
+        max_order: settings.max_order,
+        roulette_order: settings.roulette_order,
+        sky: settings.sky,
     };
     Ok(mitsuba::scene(path, frame, &scene)?)
 }

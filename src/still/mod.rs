@@ -45,7 +45,7 @@ use crate::formats::volume::VolumeFileError;
 use crate::formats::volume::mitsuba::SceneError;
 use crate::job::Cancelled;
 use crate::memory::TooMuch;
-use crate::render::LightError;
+use crate::scene::LightError;
 use crate::synthesis::SynthesisError;
 
 /// Most pixels of a picture each way.

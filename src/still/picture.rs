@@ -12,13 +12,12 @@ use super::{LARGEST_SIDE, StillError, effects, finishing};
 use crate::cloth::{ClothSettings, REACH_MM};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
+use crate::film::{Denoise, Film, Pixel, Tone};
 use crate::formats::{exr, png};
 use crate::job::Job;
 use crate::memory;
-use crate::render::{
-    self, Both, Bounds, Camera, Denoise, Film, LightRig, Pixel, RenderOutcome, RenderSettings,
-    Scatterer, Tone, View,
-};
+use crate::render::{self, Both, RenderOutcome, RenderSettings, Scatterer};
+use crate::scene::{Bounds, Camera, LightRig, View};
 
 /// Degrees across the picture where the eye has a direction of its own.
 const FIELD_OF_VIEW: f32 = 30.0;
@@ -501,7 +500,7 @@ impl Still {
     }
 
     /// The picture as shown: denoised unless the request said no, sRGB with straight alpha.
-    pub fn picture(&self) -> png::Picture {
+    pub fn picture(&self) -> crate::film::Picture {
         // Nobody cancels this one.
         match self.clean(&Job::new()) {
             Some(clean) => self.tone.picture_of(&self.film, &clean),

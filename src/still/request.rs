@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::job::Job;
-use crate::render::{Backing, PRESET_NAMES, View};
+use crate::render::Backing;
+use crate::scene::{PRESET_NAMES, View};
 
 /// What lights the cloth.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -85,7 +86,7 @@ pub struct Stop {
     /// Seconds of the whole work, from making the cloth to denoising and writing; a picture
     /// has one sample in every pixel even where that takes longer.
     pub seconds: Option<f64>,
-    /// Error, see [`crate::render::error`].
+    /// Error, see [`crate::film::error`].
     pub error: Option<f64>,
 }
 

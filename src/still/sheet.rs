@@ -7,11 +7,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::finishing;
 use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, lights, render_lit};
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{StillReport, StillRequest};
-use super::{LARGEST_SIDE, StillError, png_ending};
+use super::{LARGEST_SIDE, StillError, finishing, png_ending};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::png;
@@ -45,13 +44,13 @@ pub struct Sheet {
     pub places: Vec<SheetPlace>,
     /// Width and height of each picture in pixels.
     pub each: (u32, u32),
-    picture: png::Picture,
+    picture: crate::film::Picture,
     metadata: png::Metadata,
 }
 
 impl Sheet {
     /// The sheet as shown, sRGB with straight alpha; clear between the pictures.
-    pub fn picture(&self) -> &png::Picture {
+    pub fn picture(&self) -> &crate::film::Picture {
         &self.picture
     }
 
@@ -148,7 +147,7 @@ pub fn render_sheet(
     // What is wrong with the light is said before anything takes long.
     let lights = lights(&request.light, request.view, request.turned)?;
     let clear = [1.0, 1.0, 1.0, 0.0];
-    let mut picture = png::Picture {
+    let mut picture = crate::film::Picture {
         width: layout.size.0,
         height: layout.size.1,
         pixels: vec![clear; layout.size.0 as usize * layout.size.1 as usize],
@@ -215,7 +214,7 @@ fn ask_for_sheet((width, height): (u32, u32)) -> Result<(), StillError> {
 }
 
 /// Copies a picture into the sheet.
-fn paste(sheet: &mut png::Picture, picture: &png::Picture, x: u32, y: u32) {
+fn paste(sheet: &mut crate::film::Picture, picture: &crate::film::Picture, x: u32, y: u32) {
     let (across, width) = (sheet.width as usize, picture.width as usize);
     for (row, pixels) in picture.pixels.chunks(width.max(1)).enumerate() {
         let from = (y as usize + row) * across + x as usize;

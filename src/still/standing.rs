@@ -15,8 +15,9 @@
 use glam::{Vec3, Vec4};
 
 use super::planes::Plane;
-use crate::render::tone::{curve, decode_srgb, encode_srgb, uncurve};
-use crate::render::{Film, luminance};
+use crate::film::Film;
+use crate::film::tone::{curve, decode_srgb, encode_srgb, uncurve};
+use crate::scene::luminance;
 
 /// Variance that the denoiser leaves of the noise, in octaves from the pixel up. Of larger
 /// places it is not believed: with the noise it takes what is there.
@@ -315,7 +316,8 @@ fn believed(
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
-    use crate::render::{Random, Sample};
+    use crate::film::Sample;
+    use crate::random::Random;
 
     const SIDES: [u32; 2] = [64, 48];
 

@@ -8,7 +8,8 @@ use glam::{DVec3, Mat3, UVec3, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::{DenseGrid, sggx_matrix};
-use crate::render::{Bounds, Medium};
+use crate::render::Medium;
+use crate::scene::Bounds;
 
 /// Yarn number of empty space.
 pub const NO_YARN: i32 = -1;

@@ -3,7 +3,8 @@
 use glam::{IVec3, Vec3};
 
 use super::{BLOCK, BRICK, BRICK_VOXELS, DenseGrid, NOT_STORED, Taps, index, inside};
-use crate::render::{MajorantWalk, Ray, Stretch, Voxel};
+use crate::render::{MajorantWalk, Stretch, Voxel};
+use crate::scene::Ray;
 
 /// A walk through the bricks of a [`DenseGrid`]: a 3-D DDA (Amanatides and Woo 1987)
 /// whose exit distances are computed from whole brick numbers at every step, so that

@@ -9,9 +9,10 @@ use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use super::geometry::{Direction, WeaveGeometry, twist_angle};
+use super::geometry::{WeaveGeometry, twist_angle};
 use super::noise::{crossing_window, hash, signed, unit};
 use super::recipe::YarnRecipe;
+use crate::design::Direction;
 
 /// Every yarn of a recipe shares one layout, so that its fibres meet at block borders.
 const LAYOUT_SEED: u64 = 0x70_6963_6b67;

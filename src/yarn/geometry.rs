@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 
 use super::noise::{crossing_window, hash, signed};
 use super::recipe::YarnRecipe;
-use crate::design::WeavePattern;
+use crate::design::{Direction, WeavePattern};
 
 /// Sections stored per crossing.
 const STATIONS: usize = 32;
@@ -20,15 +20,6 @@ const INCOMPRESSIBLE: f32 = 0.45;
 
 /// Share of its room that a yarn loses where it dives from face to face.
 const SQUEEZE: f32 = 0.13;
-
-/// The two directions of yarns in a weave.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// Ends: along +y.
-    Warp,
-    /// Picks: along +x.
-    Weft,
-}
 
 /// A yarn's cross-section at one place; lengths in mm.
 #[derive(Debug, Clone, Copy, Default)]

@@ -16,7 +16,7 @@ mod recipe;
 mod section;
 pub mod tubes;
 
-pub use geometry::{Direction, WeaveGeometry, YarnPath};
+pub use geometry::{WeaveGeometry, YarnPath};
 pub use noise::{hash, unit};
 pub use recipe::{RecipeError, YarnRecipe};
 pub use section::{CrossSection, CutThread, MOST_CROSSINGS, cross_section};

@@ -2,9 +2,9 @@
 
 use glam::Vec2;
 
-use super::geometry::{Direction, WeaveGeometry};
+use super::geometry::WeaveGeometry;
 use super::recipe::YarnRecipe;
-use crate::design::{Design, WeavePattern, YarnId};
+use crate::design::{Design, Direction, WeavePattern, YarnId};
 
 /// Points along a crossing of the thread's outline.
 const STEPS: u32 = 12;
@@ -157,7 +157,7 @@ pub fn cross_section(
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
     use super::*;
-    use crate::formats::presets;
+    use crate::presets;
 
     #[test]
     fn a_thread_passes_over_and_under_as_the_drawdown_says() {

@@ -11,9 +11,9 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use super::geometry::{Direction, WeaveGeometry};
+use super::geometry::WeaveGeometry;
 use super::recipe::{RecipeError, YarnRecipe};
-use crate::design::{Design, Positions, WeavePattern, YarnId};
+use crate::design::{Design, Direction, Positions, WeavePattern, YarnId};
 use crate::limits::YARN_CROSSINGS;
 
 /// Threads laid beyond the window on each side.

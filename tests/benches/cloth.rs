@@ -8,9 +8,10 @@ use glam::Vec3;
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use pickglass::design::Design;
 use pickglass::exemplar::{Allowance, BlockMajorants, ExemplarStore};
-use pickglass::formats::presets;
 use pickglass::job::Job;
-use pickglass::render::{LightRig, RenderSettings, View, render};
+use pickglass::presets;
+use pickglass::render::{RenderSettings, render};
+use pickglass::scene::{LightRig, View};
 use pickglass::still::usual_width_mm;
 use pickglass::synthesis::{Catalogue, EdgeFix, NeighbourBits};
 

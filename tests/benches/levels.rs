@@ -18,10 +18,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
-use pickglass::formats::{atomic, presets};
+use pickglass::film::{Film, Pixel};
 use pickglass::job::Job;
-use pickglass::render::{Film, Pixel};
 use pickglass::still::{self, LightChoice, StillRequest, Stop};
+use pickglass::{atomic, presets};
 
 const DESIGNS: [&str; 6] = [
     "denim",

@@ -10,9 +10,9 @@
 mod preview_views;
 
 use pickglass::exemplar::ExemplarStore;
+use pickglass::film::tone::encode_srgb;
 use pickglass::formats::png;
 use pickglass::job::Job;
-use pickglass::render::tone::encode_srgb;
 use pickglass::still::{self, Stop};
 use preview_views::{CROP, PreviewView, SIZE, SQUARE, reference_file, squares, visits};
 
@@ -65,7 +65,7 @@ fn make(view: &PreviewView, error: f64, store: &ExemplarStore) {
         .copied()
         .collect();
     let means = squares(CROP[0] as usize, &pixels);
-    let reference = png::Picture {
+    let reference = pickglass::film::Picture {
         width: CROP[0] / SQUARE as u32,
         height: CROP[1] / SQUARE as u32,
         pixels: (means.into_iter())

@@ -9,11 +9,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::Vec3;
+use pickglass::atomic;
 use pickglass::cloth::colour::{self, Measured};
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use pickglass::design::{Design, Family, Filled, Sett, Srgb, Structure, Yarn, YarnId, YarnMaps};
 use pickglass::exemplar::{ExemplarSet, ExemplarStore};
-use pickglass::formats::atomic;
 use pickglass::job::Job;
 use pickglass::synthesis::Catalogue;
 

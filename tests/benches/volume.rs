@@ -10,11 +10,11 @@ use std::time::Instant;
 
 use pickglass::cloth::{ClothVolume, ClothWindow, Part, Region};
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::{presets, volume};
+use pickglass::formats::volume;
 use pickglass::job::Job;
-use pickglass::render::{
-    Background, Camera, LightRig, RenderSettings, Scatterer, View, luminance, render,
-};
+use pickglass::presets;
+use pickglass::render::{Background, RenderSettings, Scatterer, render};
+use pickglass::scene::{Camera, LightRig, View, luminance};
 use pickglass::still::{self, StillRequest};
 use pickglass::volume::Taps;
 use pickglass::volume::source::{CellBox, SourceVoxel, VoxelSource};
@@ -118,7 +118,7 @@ fn mean<S: Scatterer>(what: &S, camera: &Camera) -> (f64, f64) {
     let film = outcome.expect("rendered").film;
     let count = film.pixels().len() as f64;
     let sum =
-        |of: &dyn Fn(&pickglass::render::Pixel) -> f64| film.pixels().iter().map(of).sum::<f64>();
+        |of: &dyn Fn(&pickglass::film::Pixel) -> f64| film.pixels().iter().map(of).sum::<f64>();
     (
         sum(&|p| f64::from(luminance(p.mean()))) / count,
         sum(&|p| p.variance()).sqrt() / count,

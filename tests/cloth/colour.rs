@@ -17,9 +17,8 @@ use pickglass::design::{
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::render::{
-    Backing, Bounds, LightRig, RenderSettings, Scatterer, Sky, Sun, View, render,
-};
+use pickglass::render::{Backing, RenderSettings, Scatterer, render};
+use pickglass::scene::{Bounds, LightRig, Sky, Sun, View};
 use pickglass::synthesis::Catalogue;
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 

@@ -6,7 +6,8 @@ use glam::Vec3;
 use pickglass::cloth::ClothVolume;
 use pickglass::design::WeavePattern;
 use pickglass::job::Job;
-use pickglass::render::{Random, Voxel};
+use pickglass::random::Random;
+use pickglass::render::Voxel;
 
 /// Blocks of a stretch of cloth, beyond the repeat on every side.
 fn blocks(cloth: &ClothVolume) -> Vec<Option<u16>> {

@@ -5,7 +5,9 @@
 use crate::cloth_scenes::{at_level, direction, preset, weave};
 use glam::Vec3;
 use pickglass::cloth::{ClothVolume, HairLayer};
-use pickglass::render::{Counters, MajorantWalk, Medium, Random, Ray, Scatterer};
+use pickglass::random::Random;
+use pickglass::render::{Counters, MajorantWalk, Medium, Scatterer};
+use pickglass::scene::Ray;
 
 fn tweed() -> ClothVolume {
     weave(&preset("tweed"), at_level(3))

@@ -1,15 +1,16 @@
 //! Numerical hard cases of a cloth: each comes out whole.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-use crate::cloth_scenes;
-use crate::cloth_scenes::{at_level, cotton, two_yarns, weave, weave_from, woven};
+use crate::cloth_scenes::{self, at_level, cotton, two_yarns, weave, weave_from, woven};
 use glam::Vec3;
 use pickglass::cloth::ClothVolume;
 use pickglass::design::{
     Design, Family, Sett, WeavePattern, Yarn, YarnId, YarnMaps, weave as notation,
 };
 use pickglass::job::Job;
-use pickglass::render::{LightRig, Random, RenderSettings, View, render};
+use pickglass::random::Random;
+use pickglass::render::{RenderSettings, render};
+use pickglass::scene::{LightRig, View};
 use pickglass::synthesis::Catalogue;
 
 /// Looks at a cloth from all sides; answers the share of it that is covered, seen from

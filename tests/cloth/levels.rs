@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use pickglass::design::Sett;
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::presets;
 use pickglass::job::Job;
+use pickglass::presets;
 use pickglass::still::{self, StillRequest, Stop};
 
 /// Mean radiance and coverage of a design.
@@ -36,7 +36,7 @@ fn shown(name: &str, level: u32, corrected: bool) -> [f64; 2] {
     assert_eq!(still.report.majorant_violations, 0);
     let pixels = still.film.pixels();
     let count = pixels.len() as f64;
-    let light = |pixel: &pickglass::render::Pixel| f64::from(pixel.mean().element_sum()) / 3.0;
+    let light = |pixel: &pickglass::film::Pixel| f64::from(pixel.mean().element_sum()) / 3.0;
     [
         pixels.iter().map(light).sum::<f64>() / count,
         (pixels.iter().map(|pixel| f64::from(pixel.alpha()))).sum::<f64>() / count,

@@ -8,7 +8,9 @@ use pickglass::design::{
     Design, Family, Lattice, Repeat, Sett, Srgb, WeavePattern, Yarn, YarnId, YarnMaps,
 };
 use pickglass::exemplar::Allowance;
-use pickglass::render::{Counters, MajorantWalk, Medium, Random, Ray, Scatterer};
+use pickglass::random::Random;
+use pickglass::render::{Counters, MajorantWalk, Medium, Scatterer};
+use pickglass::scene::Ray;
 use rayon::prelude::*;
 
 /// A weave without order: nearly every border is a seam.

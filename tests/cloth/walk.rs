@@ -9,10 +9,11 @@ use glam::Vec3;
 use pickglass::cloth::ClothVolume;
 use pickglass::design::{Lattice, Repeat, Sett, WeavePattern};
 use pickglass::job::Job;
+use pickglass::random::Random;
 use pickglass::render::{
-    Background, Counters, LightRig, Medium, Random, Ray, RenderOutcome, RenderSettings, Scatterer,
-    View, render,
+    Background, Counters, Medium, RenderOutcome, RenderSettings, Scatterer, render,
 };
+use pickglass::scene::{LightRig, Ray, View};
 
 /// Sum of squares of (tracked − marched)/error over `rays` rays; the marched ones moved
 /// aside by `slide` mm.

@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 use pickglass::design::{Colourway, Design, Family, Srgb, Yarn};
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::{presets, ron};
+use pickglass::formats::ron;
 use pickglass::job::Job;
+use pickglass::presets;
 use pickglass::still::{AS_DESIGNED, StillRequest, Stop, prepare, render, render_sheet};
 
 fn herringbone() -> Design {

@@ -9,7 +9,8 @@ use pickglass::design::{
     RegionYarns, Regions, Repeat, Sett, SourceImage, Srgb, Structure, WeavePattern, Yarn, YarnId,
     YarnMap, YarnMaps,
 };
-use pickglass::formats::{LoadOptions, atomic, load, presets, ron};
+use pickglass::formats::{LoadOptions, load, ron};
+use pickglass::{atomic, presets};
 
 /// A design that uses everything a document can hold.
 fn everything() -> Design {

@@ -11,7 +11,8 @@ use pickglass::design::{
     Colourway, Design, Family, Fill, Filled, Grid, Region, Regions, Sett, Srgb, Structure, Yarn,
     YarnId, YarnMap, YarnMaps, floats,
 };
-use pickglass::formats::{atomic, presets, ron};
+use pickglass::formats::ron;
+use pickglass::{atomic, presets};
 
 fn colour(text: &str) -> Srgb {
     text.parse().unwrap()

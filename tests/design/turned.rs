@@ -11,9 +11,9 @@ use pickglass::design::{
     YarnMaps,
 };
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::pdf::{self, PdfOptions};
 use pickglass::job::Job;
-use pickglass::render::{LightRig, Sky, View};
+use pickglass::print::{self, PdfOptions};
+use pickglass::scene::{LightRig, Sky, View};
 use pickglass::still::{
     EffectBase, EffectChoice, FirstSight, Heading, LightChoice, SightTables, Still, StillRequest,
     Stop, prepare, render,
@@ -260,7 +260,7 @@ fn the_printed_threads_keep_their_numbers_when_the_draft_is_turned() {
             cloth: false,
             ..PdfOptions::default()
         };
-        let printed = printed(&pdf::write(&design, &weave, &options).unwrap());
+        let printed = printed(&print::write(&design, &weave, &options).unwrap());
         let numbers: Vec<_> = (printed.texts.iter())
             .filter_map(|(x, y, text)| Some((*x, *y, text.parse::<u32>().ok()?)))
             .collect();

@@ -4,10 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use pickglass::design::{
-    Design, Draft, Family, Fill, Filled, Grid, Lattice, Lifting, Region, RegionYarns, Regions,
-    Repeat, Sett, Shed, Srgb, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
+    Design, Direction, Draft, Family, Fill, Filled, Grid, Lattice, Lifting, Region, RegionYarns,
+    Regions, Repeat, Sett, Shed, Srgb, Structure, Ties, WeavePattern, Yarn, YarnId, YarnMaps,
+    usual_sett,
 };
-use pickglass::edit::{Cells, Direction, Document, Edit, Rect};
+use pickglass::edit::{Cells, Document, Edit, Rect};
 use pickglass::hash::mix;
 use proptest::prelude::*;
 

@@ -14,7 +14,7 @@ mod loom_drafts;
 mod loom_fixtures;
 mod loom_fuzz;
 mod loom_limits;
-mod pdf;
+mod print;
 mod wif_drafts;
 mod wif_fuzz;
 mod wif_limits;

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::mutation::mutated;
 use pickglass::design::{Design, YarnMap};
-use pickglass::formats::{FormatError, LoadOptions, load_bytes, presets, ron, wif};
+use pickglass::formats::{FormatError, LoadOptions, load_bytes, ron, wif};
+use pickglass::presets;
 use proptest::prelude::*;
 
 fn fixtures() -> Vec<(PathBuf, Vec<u8>)> {

@@ -303,7 +303,7 @@ fn sizes_are_checked_before_memory_is_asked_for() {
 
 #[test]
 fn what_a_wif_cannot_hold_is_listed() {
-    use pickglass::formats::presets;
+    use pickglass::presets;
     let design = presets::design("twill-satin").unwrap().unwrap();
     let written = wif::write(&design).unwrap();
     let lost = written.lost.join("\n");

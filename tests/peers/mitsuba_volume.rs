@@ -10,7 +10,8 @@ use pickglass::cloth::{ClothWindow, Part, Region};
 use pickglass::formats::volume;
 use pickglass::formats::volume::mitsuba::{Scene, scene};
 use pickglass::job::Job;
-use pickglass::render::{Background, LightRig, Medium, RenderSettings, View};
+use pickglass::render::{Background, Medium, RenderSettings};
+use pickglass::scene::{LightRig, View};
 use pickglass::volume::source::VoxelSource;
 use pickglass::volume::{DenseGrid, GridVoxel, Taps};
 
@@ -56,7 +57,9 @@ fn mitsuba_renders_the_exported_scene_alike() {
                 camera: &camera,
                 // Mitsuba's suns are points.
                 lights: &points(&lights),
-                settings: &settings,
+                max_order: settings.max_order,
+                roulette_order: settings.roulette_order,
+                sky: settings.sky,
             },
         )
         .expect("a scene");

@@ -5,10 +5,9 @@ use std::process::Command;
 
 use crate::volume_sources::{Rule, python, write_truth};
 use glam::UVec3;
-use pickglass::formats::presets;
-use pickglass::formats::volume;
-use pickglass::formats::yarns;
+use pickglass::formats::{volume, yarns};
 use pickglass::job::Job;
+use pickglass::presets;
 use pickglass::yarn::tubes::tubes;
 
 /// Odd sides: no leaf, tile or page is full.

@@ -7,7 +7,8 @@ use std::path::Path;
 use std::process::Command;
 
 use pickglass::design::Design;
-use pickglass::formats::{LoadOptions, load, presets, wif};
+use pickglass::formats::{LoadOptions, load, wif};
+use pickglass::presets;
 
 /// Designs of every kind: presets, and drafts of every format.
 fn designs() -> Vec<(String, Design)> {

@@ -4,8 +4,10 @@ use std::time::Instant;
 
 use crate::render_scenes::{YarnGrid, shoot, silk_satin, wool_twill};
 use glam::Vec3;
+use pickglass::film::{Denoise, Film, Sample};
 use pickglass::job::Job;
-use pickglass::render::{Denoise, Film, LightRig, RenderSettings, Sample, luminance};
+use pickglass::render::RenderSettings;
+use pickglass::scene::{LightRig, luminance};
 use pickglass::volume::Taps;
 
 fn film(scene: &YarnGrid, share: f32, size: u32, spp: u32, seed: u64) -> Film {

@@ -4,14 +4,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::render_scenes::{lone_sun, shoot, silk_satin, wool_twill};
 use glam::{UVec3, Vec3};
+use pickglass::film::error::DARK;
+use pickglass::film::{Film, FirstHit, Picture, Pixel, Sample, Tone};
 use pickglass::formats::exr;
-use pickglass::formats::png::{self, Depth, Metadata, Picture};
+use pickglass::formats::png::{self, Depth, Metadata};
 use pickglass::job::Job;
-use pickglass::render::error::DARK;
+use pickglass::random::Random;
 use pickglass::render::{
-    Backing, Bounds, Collision, Counters, Dome, Film, FirstHit, LightRig, PRESET_NAMES, Pixel,
-    Random, Ray, RenderSettings, Sample, Scatterer, Sky, Tone, View, order_histogram, render,
+    Backing, Collision, Counters, RenderSettings, Scatterer, order_histogram, render,
 };
+use pickglass::scene::{Bounds, Dome, LightRig, PRESET_NAMES, Ray, Sky, View};
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 
 fn in_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
@@ -325,7 +327,7 @@ fn orders_predict_every_albedo() {
         ..RenderSettings::default()
     };
     let camera = View::Face.camera(Vec3::ZERO, 0.1, 16, 16);
-    let down = |_: &mut pickglass::render::Random| Ray {
+    let down = |_: &mut pickglass::random::Random| Ray {
         origin: Vec3::new(0.0, 0.0, 5.0),
         direction: Vec3::NEG_Z,
     };
@@ -503,11 +505,11 @@ fn an_environment_picture_of_a_dome_lights_like_the_dome() {
         .map(|k| {
             let u = ((k % width) as f32 + 0.5) / width as f32;
             let v = ((k / width) as f32 + 0.5) / height as f32;
-            let towards = pickglass::render::EnvironmentImage::direction(u, v);
-            pickglass::render::Environment::radiance(&dome, towards)
+            let towards = pickglass::scene::EnvironmentImage::direction(u, v);
+            pickglass::scene::Environment::radiance(&dome, towards)
         })
         .collect();
-    let image = pickglass::render::EnvironmentImage::new(width, height, pixels).expect("sound");
+    let image = pickglass::scene::EnvironmentImage::new(width, height, pixels).expect("sound");
     let scene = wool_twill(4);
     let grid = scene.grid(Taps::Nearest);
     let camera = scene.face_camera(0.7, 32, 32);

@@ -8,9 +8,9 @@ use pickglass::design::{
     Design, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::presets;
 use pickglass::job::Job;
-use pickglass::render::View;
+use pickglass::presets;
+use pickglass::scene::View;
 use pickglass::still::{Engine, FirstSight, LightChoice, SightTables, StillRequest, Stop, prepare};
 
 fn design(name: &str) -> Arc<Design> {

@@ -9,7 +9,8 @@ use pickglass::design::{
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::render::{Random, Voxel};
+use pickglass::random::Random;
+use pickglass::render::Voxel;
 use pickglass::still::{Followed, PreparedCloth, StillRequest, prepare};
 
 const SIZE: u32 = 24;

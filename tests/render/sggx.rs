@@ -1,9 +1,8 @@
 //! The fibre microflake against integrals and against numbers from elsewhere.
 
 use glam::{DMat3, DVec3, Vec3};
+use pickglass::random::{LARGEST_BELOW_ONE, Random};
 use pickglass::render::Fibre;
-use pickglass::render::Random;
-use pickglass::render::random::LARGEST_BELOW_ONE;
 use pickglass::volume::sggx_matrix;
 
 const ALPHAS: [f32; 6] = [0.01, 0.05, 0.1, 0.3, 0.6, 1.0];

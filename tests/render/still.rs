@@ -2,8 +2,10 @@
 
 use crate::render_scenes::{shoot, silk_satin, wool_twill};
 use glam::Vec3;
+use pickglass::film::Tone;
 use pickglass::formats::png::{self, Depth, Metadata};
-use pickglass::render::{LightRig, PRESET_NAMES, RenderSettings, Tone, View};
+use pickglass::render::RenderSettings;
+use pickglass::scene::{LightRig, PRESET_NAMES, View};
 use pickglass::volume::Taps;
 
 /// Set this to a folder to look at what the tests render.

@@ -2,10 +2,12 @@
 
 use crate::render_scenes::{shoot, silk_satin, wool_twill};
 use glam::{UVec3, Vec3};
+use pickglass::random::Random;
 use pickglass::render::{
-    Background, Both, Bounds, Counters, Dome, EnvironmentImage, LightRig, MajorantWalk, Medium,
-    Nothing, Random, Ray, RenderSettings, Scatterer, Sky, Stack, Stretch, View, Voxel,
+    Background, Both, Counters, MajorantWalk, Medium, Nothing, RenderSettings, Scatterer, Stack,
+    Stretch, Voxel,
 };
+use pickglass::scene::{Bounds, Dome, EnvironmentImage, LightRig, Ray, Sky, View};
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps, VolumeError};
 
 const ALPHAS: [f32; 6] = [0.01, 0.05, 0.1, 0.3, 0.6, 1.0];

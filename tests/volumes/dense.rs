@@ -8,7 +8,8 @@ use std::path::Path;
 use crate::render_scenes::shoot;
 use pickglass::formats::volume;
 use pickglass::job::Job;
-use pickglass::render::{LightRig, Medium, RenderOutcome, RenderSettings, View};
+use pickglass::render::{Medium, RenderOutcome, RenderSettings};
+use pickglass::scene::{LightRig, View};
 use pickglass::volume::Taps;
 
 /// Voxels of tests/cases/07/slab.nrrd along x, y and z.
@@ -42,7 +43,7 @@ fn render(path: &Path, taps: Taps, spp: u32) -> RenderOutcome {
 /// Means of light and alpha over a picture.
 fn means(outcome: &RenderOutcome) -> [f64; 2] {
     let pixels = outcome.film.pixels();
-    let mean = |of: &dyn Fn(&pickglass::render::Pixel) -> f64| {
+    let mean = |of: &dyn Fn(&pickglass::film::Pixel) -> f64| {
         pixels.iter().map(of).sum::<f64>() / pixels.len() as f64
     };
     [

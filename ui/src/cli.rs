@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use pickglass::design::{Family, Srgb};
 use pickglass::exemplar::COARSEST_LEVEL;
-use pickglass::render::{Backing, PRESET_NAMES, View};
+use pickglass::render::Backing;
+use pickglass::scene::{PRESET_NAMES, View};
 
 use crate::values::{self, Dial, PicturePath, SettArg, Size, VolumePath};
 use crate::window::Restarts;

@@ -2,7 +2,7 @@
 //! help sheet and the README's table are made from this list.
 
 use egui::{Key, KeyboardShortcut, Modifiers};
-use pickglass::render::View;
+use pickglass::scene::View;
 
 use crate::window::Pane;
 

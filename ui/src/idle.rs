@@ -5,7 +5,8 @@ use std::path::Path;
 
 use anyhow::bail;
 use pickglass::formats::image::Encoding;
-use pickglass::formats::{jc5, presets};
+use pickglass::formats::jc5;
+use pickglass::presets;
 use pickglass::render::Backing;
 
 use crate::cli::{ConvertArgs, ImageArgs, StillArgs};

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use pickglass::design::{Design, Sett};
 use pickglass::formats::image::{ImageAs, ImageContent, ImageReading};
-use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, jc5, presets};
+use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, jc5};
+use pickglass::presets;
 
 use crate::cli::{ConvertArgs, ImageArgs, SettArgs};
 

@@ -7,7 +7,8 @@ use pickglass::cloth::Region;
 use pickglass::formats::volume::VolumeFormat;
 use pickglass::formats::yarns;
 use pickglass::limits;
-use pickglass::render::{Backing, PRESET_NAMES, View};
+use pickglass::render::Backing;
+use pickglass::scene::{PRESET_NAMES, View};
 
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::still::{EffectBase, EffectChoice, LARGEST_SIDE, LightChoice};

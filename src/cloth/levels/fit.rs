@@ -16,10 +16,10 @@ use super::series::{KINDS, TERMS, kind, places, terms};
 use crate::cloth::colour::{first_ray, path_to};
 use crate::cloth::{ClothVolume, HairLayer};
 use crate::job::{Cancelled, Job};
+use crate::random::Random;
 use crate::render::path::Tally;
-use crate::render::{
-    Arrival, Both, Counters, PLACE, Random, Ray, RenderSettings, SECOND, Scatterer, Stack, Sun,
-};
+use crate::render::{Arrival, Both, Counters, PLACE, RenderSettings, SECOND, Scatterer, Stack};
+use crate::scene::{Ray, Sun};
 
 /// Elevations of the lamps, degrees, and where each starts its ring of [`AZIMUTHS`], as a
 /// share of a step: all round, straight across and along the yarns, where highlights are
@@ -484,7 +484,7 @@ mod tests {
     use super::super::series::OWN;
     use super::*;
     use crate::exemplar::ExemplarStore;
-    use crate::formats::presets;
+    use crate::presets;
     use crate::still::{self, PreparedCloth, StillRequest};
 
     /// The cloth of a preset at a level.

@@ -176,7 +176,7 @@ mod tests {
     use super::super::fit::{EACH, PLACES};
     use super::*;
     use crate::design::Family;
-    use crate::render::Random;
+    use crate::random::Random;
 
     /// Light whose terms are unlike each other.
     fn light(seed: u64) -> Light {

@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
 
+use crate::atomic::{self, WriteError};
 use crate::design::Design;
-use crate::formats::atomic::{self, WriteError};
 use crate::formats::ron::{self, RonError};
 use journal::{Head, Kind};
 

@@ -16,7 +16,7 @@ use glam::Vec3;
 use super::ExrError;
 use crate::formats::field_table::{Field, Handling, Table};
 use crate::memory;
-use crate::render::EnvironmentImage;
+use crate::scene::EnvironmentImage;
 
 /// The fields of an environment. The order of lines in the file (`lineOrder`) places no
 /// pixel: each block says where it belongs.

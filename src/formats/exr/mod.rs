@@ -21,9 +21,9 @@ use exr::prelude::{
 };
 use glam::Vec3;
 
-use super::atomic;
+use crate::atomic;
+use crate::film::Film;
 use crate::memory::TooMuch;
-use crate::render::Film;
 
 /// Channel value of `yarn.ID` where nothing was met.
 pub const NO_YARN: u32 = u32::MAX;
@@ -148,7 +148,7 @@ pub fn write(
 
 fn channels(film: &Film) -> AnyChannels<FlatSamples> {
     let pixels = film.pixels();
-    let float = |name: &str, value: &dyn Fn(&crate::render::Pixel) -> f32| {
+    let float = |name: &str, value: &dyn Fn(&crate::film::Pixel) -> f32| {
         AnyChannel::new(name, FlatSamples::F32(pixels.iter().map(value).collect()))
     };
     let mut list = vec![

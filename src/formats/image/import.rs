@@ -17,7 +17,7 @@ use crate::design::{
     Density, Design, DesignError, Family, Fill, FirstEnd, FirstPick, Grid, Origin, Region, Regions,
     Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
-use crate::formats::{Imported, LoadOptions, stem};
+use crate::formats::reading::{Imported, LoadOptions, stem};
 use crate::limits;
 
 /// The most colours that are taken for artwork without being told.

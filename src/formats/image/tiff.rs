@@ -18,7 +18,7 @@ use super::{
     Fault, Pixels, Raster, SAVE_PLAIN, TRANSPARENT, check_coloured, check_declared, remark,
 };
 use crate::design::Srgb;
-use crate::formats::MAX_FILE;
+use crate::limits::FILE as MAX_FILE;
 
 type Open<'b> = Decoder<Cursor<Cow<'b, [u8]>>>;
 

@@ -2,8 +2,8 @@
 
 use super::areas::parse;
 use crate::design::{FirstEnd, FirstPick, Structure, WeavePattern};
+use crate::formats::sheet::threads::Threads;
 use crate::formats::sheet::{Misfit, NO_PALETTE, Place, Sheet, SheetError, Warnings};
-use crate::formats::wif::threads::Threads;
 use crate::formats::{Imported, LoadOptions};
 
 /// What is remarked on where nobody said that the cloth is woven face down.

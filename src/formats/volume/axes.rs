@@ -5,7 +5,7 @@
 
 use glam::{UVec3, Vec3};
 
-use crate::render::Bounds;
+use crate::scene::Bounds;
 
 /// Share of a step by which an axis may be off x, y or z: what rounding in text leaves.
 const ASLANT: f64 = 1e-4;

@@ -8,7 +8,7 @@ use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 
 use super::VolumeFileError;
-use crate::formats::atomic::Pending;
+use crate::atomic::Pending;
 use crate::job::Job;
 use crate::volume::source::{CellBox, Frame, SourceVoxel, VoxelSource};
 

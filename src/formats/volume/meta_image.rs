@@ -8,7 +8,7 @@ use super::dense::{Channel, Layer};
 use super::fields::{Field, Scalar, Start, Wrong, numbers};
 use super::read::{beginning, damaged, length_of};
 use super::{VolumeFileError, beside, units};
-use crate::formats::atomic::folder_of;
+use crate::atomic::folder_of;
 use crate::formats::field_table::{Field as Row, Handling, Table};
 use crate::volume::source::Frame;
 

@@ -8,9 +8,7 @@ use glam::Vec3;
 
 use super::{Attachment, beside};
 use crate::formats::exr::{self, ExrError};
-use crate::render::{
-    Camera, Environment, EnvironmentImage, LightRig, RenderSettings, Sky, luminance,
-};
+use crate::scene::{Camera, Environment, EnvironmentImage, LightRig, Sky, luminance};
 use crate::volume::source::Frame;
 
 /// Rows of a sky: a third of a degree each, by which the horizon is blurred.
@@ -23,8 +21,12 @@ pub struct Scene<'s> {
     pub camera: &'s Camera,
     /// What lights it; suns of some width become points.
     pub lights: &'s LightRig,
-    /// How long paths are.
-    pub settings: &'s RenderSettings,
+    /// Scatterings along a path after which it ends.
+    pub max_order: u32,
+    /// Scattering order from which paths play Russian roulette.
+    pub roulette_order: u32,
+    /// Whether the sky lights the cloth.
+    pub sky: bool,
 }
 
 /// Why a volume has no scene.
@@ -170,11 +172,11 @@ fn xml(names: &Names, frame: &Frame, scene: &Scene, around: &Surroundings) -> St
         "  <integrator type=\"volpath\">\n    <!-- Depth counts the light's end of a path too. -->\n    \
          <integer name=\"max_depth\" value=\"{}\"/>\n    <integer name=\"rr_depth\" value=\"{}\"/>\n  \
          </integrator>",
-        i64::from(scene.settings.max_order) + 1,
-        scene.settings.roulette_order.min(1 << 30),
+        i64::from(scene.max_order) + 1,
+        scene.roulette_order.min(1 << 30),
     );
     text += &sensor(scene.camera);
-    if scene.settings.sky {
+    if scene.sky {
         match around {
             Surroundings::Dark => {}
             Surroundings::Constant(radiance) => {

@@ -30,7 +30,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::atomic::{Pending, WriteError, folder_of};
+use crate::atomic::{Pending, WriteError, folder_of};
 use crate::job::{Cancelled, Job};
 use crate::memory::TooMuch;
 use crate::volume::VolumeError;

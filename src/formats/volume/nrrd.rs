@@ -13,7 +13,7 @@ use super::fields::{Field, Start, Wrong};
 use super::nrrd_head::Head;
 use super::read::{beginning, behind_lines, damaged, length_of};
 use super::{VolumeFileError, beside};
-use crate::formats::atomic::folder_of;
+use crate::atomic::folder_of;
 use crate::volume::source::Frame;
 
 /// The files of a volume.

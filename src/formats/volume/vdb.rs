@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::dense::albedo;
 use super::{Plan, VolumeFileError};
-use crate::formats::atomic::{Pending, WriteError, folder_of};
+use crate::atomic::{Pending, WriteError, folder_of};
 use crate::job::Job;
 use crate::volume::source::{CellBox, Frame, NO_YARN, SourceVoxel, VoxelSource};
 

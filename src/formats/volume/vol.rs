@@ -10,7 +10,7 @@ use super::fields::{Field, Scalar, Start};
 use super::read::{beginning, damaged, length_of};
 use super::{VolumeFileError, beside};
 use crate::formats::field_table::{Field as Row, Handling, Table};
-use crate::render::Bounds;
+use crate::scene::Bounds;
 use crate::volume::source::Frame;
 
 /// Bytes before the voxels.

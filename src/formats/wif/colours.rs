@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::WifError;
 use super::read::File;
-use super::text::{bare, shorten};
-use super::threads::{Direction, Threads};
-use crate::design::Srgb;
+use super::text::bare;
+use crate::design::{Direction, Srgb};
+use crate::formats::sheet::text::shorten;
+use crate::formats::sheet::threads::Threads;
 use crate::formats::sheet::{NO_PALETTE, StandIns, Warnings, kept_number};
 
 /// The file's colours by their numbers.
@@ -126,7 +127,7 @@ impl Palette {
             (kept_number(number, stand_in.0), stand_in.1)
         });
         let chosen = chosen.collect();
-        let section = direction.section();
+        let section = super::threads::section(direction);
         match (usual, threads.default_colour) {
             (None, Some((line, number))) if !needed => {
                 let what = format!("default colour {number} of [{section}] is not in the table");

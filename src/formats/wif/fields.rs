@@ -1,11 +1,11 @@
 //! What WIF says of sizes, colours and threads, and what the reader does with it.
 
 use super::read::File;
-use super::text::{bare, boolean, shorten};
-use crate::formats::field_table::Field;
+use super::text::{bare, boolean};
 use crate::formats::field_table::Handling::{Honoured, Warned};
-use crate::formats::field_table::Table;
+use crate::formats::field_table::{Field, Table};
 use crate::formats::sheet::Warnings;
+use crate::formats::sheet::text::shorten;
 
 /// Sections in brackets, with a key where one key is meant; an example of a whole section is
 /// a line of it.

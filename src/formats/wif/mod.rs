@@ -37,8 +37,8 @@
 mod colours;
 mod fields;
 mod read;
-pub(super) mod text;
-pub(super) mod threads;
+mod text;
+mod threads;
 mod write;
 
 pub use fields::FIELDS;
@@ -47,9 +47,6 @@ pub use write::{Written, write};
 
 /// The most ends or picks a file may declare.
 pub const MAX_THREADS: u32 = crate::limits::DRAFT_THREADS;
-
-/// The program default that is no sett, in cm.
-pub const DEFAULT_SPACING_CM: f32 = 0.212;
 
 /// A file that is no draft, or a design that no WIF can hold: one line with the file, the
 /// line, what was expected and what to do.

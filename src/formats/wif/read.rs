@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::fields::name_unfollowed;
-use super::text::{self, Section, bare, boolean, same, shorten};
-use super::threads::{self, Direction};
-use super::{DEFAULT_SPACING_CM, MAX_THREADS, WifError, colours};
+use super::text::{self, Section, bare, boolean};
+use super::{MAX_THREADS, WifError, colours, threads};
 use crate::design::{
-    Draft, FirstEnd, FirstPick, ForeignSection, Lifting, MAX_SHAFTS, Shed, Structure, Ties,
-    check_size,
+    Direction, Draft, FirstEnd, FirstPick, ForeignSection, Lifting, MAX_SHAFTS, Shed, Structure,
+    Ties, check_size,
 };
 use crate::formats::encoding::decode;
+use crate::formats::sheet::text::{same, shorten};
 use crate::formats::sheet::{
     Active, Misfit, Sheet, Warnings, at_least, tieup_or_plan, warn_unused_threads, without_path,
 };
@@ -520,9 +520,4 @@ fn choose_lifting(
     }
     let line = file.line_of("LIFTPLAN").unwrap_or(1);
     tieup_or_plan(treadled, &planned, line, warnings)
-}
-
-/// Whether a spacing in mm is the default of a drawing program rather than a sett.
-pub(super) fn is_program_default(spacing_mm: f32) -> bool {
-    (spacing_mm / (10.0 * DEFAULT_SPACING_CM) - 1.0).abs() < 1e-3
 }

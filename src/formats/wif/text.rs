@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use super::WifError;
-use crate::text::visible;
+use crate::formats::sheet::text::{lines, same, shorten};
 
 /// More sections than any program writes; a guard against files made of headers.
 const MAX_SECTIONS: usize = 4096;
@@ -33,41 +33,11 @@ pub(super) struct Entry<'t> {
     pub value: Option<Cow<'t, str>>,
 }
 
-/// Lines with their terminators (`\n`, `\r\n` or a lone `\r`) taken off.
-pub(in crate::formats) fn lines(text: &str) -> impl Iterator<Item = &str> {
-    let mut rest = Some(text);
-    std::iter::from_fn(move || {
-        let text = rest.take()?;
-        match text.find(['\n', '\r']) {
-            None if text.is_empty() => None,
-            None => Some(text),
-            Some(end) => {
-                let crlf = text[end..].starts_with("\r\n");
-                rest = Some(&text[end + if crlf { 2 } else { 1 }..]);
-                Some(&text[..end])
-            }
-        }
-    })
-}
-
 /// The name in a header line, and what follows the bracket.
 fn header(line: &str) -> Option<(&str, &str)> {
     let inside = line.trim().strip_prefix('[')?;
     let (name, after) = inside.split_once(']')?;
     Some((name.trim(), after.trim()))
-}
-
-/// Whether two section names or keys are the same: case and runs of blanks do not count.
-pub(super) fn same(a: &str, b: &str) -> bool {
-    let mut a = a.split_whitespace();
-    let mut b = b.split_whitespace();
-    loop {
-        match (a.next(), b.next()) {
-            (None, None) => return true,
-            (Some(a), Some(b)) if a.eq_ignore_ascii_case(b) => {}
-            _ => return false,
-        }
-    }
 }
 
 /// The sections of a text, first what stands before any header.
@@ -199,16 +169,6 @@ impl<'t> Section<'t> {
 /// A number's or boolean's text without a trailing `; comment`.
 pub(super) fn bare(value: &str) -> &str {
     value.split(';').next().unwrap_or(value).trim()
-}
-
-/// At most 40 characters of a text, for a message.
-pub(in crate::formats) fn shorten(text: &str) -> String {
-    let end = text.char_indices().nth(40).map_or(text.len(), |at| at.0);
-    let mut short = visible(&text[..end]).into_owned();
-    if end < text.len() {
-        short.push('…');
-    }
-    short
 }
 
 /// A boolean: true, on, yes, 1 or false, off, no, 0.

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::read::known;
-use super::threads::unit_mm;
 use super::{MAX_THREADS, WifError};
 use crate::design::{
     Density, DeriveError, Design, Draft, Lifting, Loom, MAX_CROSSINGS, MAX_SHAFTS, Repeat, Shed,
     Srgb, StatedThreads, Structure, WeavePattern, YarnId, YarnMap, derive,
 };
+use crate::formats::sheet::threads::unit_mm;
 
 /// A written file and what of the design it does not hold.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -11,9 +11,9 @@ use pickglass::cloth::levels::{Gain, LevelCorrection, Sizes};
 use pickglass::cloth::{ClothSettings, ClothVolume, HairLayer, YarnClasses};
 use pickglass::design::{Design, Family, Grid, YarnId, YarnMap, YarnMaps};
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
-use pickglass::formats::{atomic, presets};
 use pickglass::job::Job;
 use pickglass::synthesis::Catalogue;
+use pickglass::{atomic, presets};
 
 /// Coarseness at which the corrections of a family are kept.
 const RATIOS: [f32; 4] = [1.75, 2.9, 5.2, 8.5];

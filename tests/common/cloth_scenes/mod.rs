@@ -13,9 +13,11 @@ use pickglass::design::{
     Design, Family, Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps,
 };
 use pickglass::exemplar::{ExemplarSet, ExemplarStore, Pair, VoxelGrid};
-use pickglass::formats::presets;
 use pickglass::job::Job;
-use pickglass::render::{Random, Ray, Voxel};
+use pickglass::presets;
+use pickglass::random::Random;
+use pickglass::render::Voxel;
+use pickglass::scene::Ray;
 use pickglass::synthesis::{Catalogue, Face};
 
 /// Settings of the default cloth at a coarser level: whatever does not hang on resolution

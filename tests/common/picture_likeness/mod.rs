@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use pickglass::design::{Srgb, delta_e_00, lab};
-use pickglass::render::tone::{decode_srgb, encode_srgb};
+use pickglass::film::tone::{decode_srgb, encode_srgb};
 
 /// A picture in linear light over the mid grey that surrounds cloth.
 pub struct Looked {

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use pickglass::design::{Design, Structure, WeavePattern};
-use pickglass::formats::presets;
+use pickglass::film::tone::decode_srgb;
+use pickglass::presets;
 use pickglass::render::Backing;
-use pickglass::render::tone::decode_srgb;
 use pickglass::still::{StillRequest, usual_width_mm};
 
 /// Size of the pictures.

@@ -5,8 +5,8 @@ pub mod peer;
 
 use glam::{UVec3, Vec3};
 use pickglass::hash::mix;
-use pickglass::render::{Bounds, LightRig, RenderOutcome, RenderSettings, Sky, Sun};
-use pickglass::render::{Camera, Scatterer, render};
+use pickglass::render::{RenderOutcome, RenderSettings, Scatterer, render};
+use pickglass::scene::{Bounds, Camera, LightRig, Sky, Sun};
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 
 /// A weave of thick procedural yarns.

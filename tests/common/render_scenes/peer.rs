@@ -5,7 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::{UVec3, Vec3};
-use pickglass::render::{Bounds, Film, RenderSettings, luminance};
+use pickglass::film::Film;
+use pickglass::render::RenderSettings;
+use pickglass::scene::{Bounds, luminance};
 use pickglass::volume::{DenseGrid, sggx_matrix};
 
 /// A perspective view and light that both renderers understand.
@@ -24,8 +26,8 @@ pub struct PeerView {
 }
 
 impl PeerView {
-    pub fn camera(&self) -> pickglass::render::Camera {
-        pickglass::render::Camera::perspective(
+    pub fn camera(&self) -> pickglass::scene::Camera {
+        pickglass::scene::Camera::perspective(
             self.target,
             self.from,
             Vec3::Y,
@@ -36,8 +38,8 @@ impl PeerView {
         )
     }
 
-    pub fn lights(&self) -> pickglass::render::LightRig {
-        use pickglass::render::{Dome, LightRig, Sky};
+    pub fn lights(&self) -> pickglass::scene::LightRig {
+        use pickglass::scene::{Dome, LightRig, Sky};
         let mut rig: LightRig = super::lone_sun(self.towards_sun, self.sun);
         rig.sky = Sky::Dome(Dome::uniform(Vec3::splat(self.sky)));
         rig

@@ -1,7 +1,7 @@
 //! The field rule: what a file says of size, place, scale, axes, orientation, colour,
 //! transparency or yarns is honoured, warned about by name, or refused by name.
 //!
-//! All tables of `formats::field_table` are walked. For each row a format's module makes a
+//! All of `formats::field_tables` are walked. For each row a format's module makes a
 //! file with the field's example and a twin without it, and reads both.
 
 mod drafts;
@@ -10,7 +10,8 @@ mod images;
 mod table;
 mod volumes;
 
-use pickglass::formats::field_table::{Field, Handling, Table, tables};
+use pickglass::formats::field_table::{Field, Handling, Table};
+use pickglass::formats::field_tables;
 use std::path::{Path, PathBuf};
 
 /// A file with a field and its twin without it, in a folder of the test's own.
@@ -86,7 +87,7 @@ fn walker_of<'w>(walkers: &'w [Walker], table: &Table) -> Option<&'w Walker> {
 fn every_field_of_every_table_is_honoured_warned_about_or_refused() {
     let walkers = table::walkers();
     let mut faults = Vec::new();
-    for table in tables() {
+    for table in field_tables() {
         let Some(walker) = walker_of(&walkers, &table) else {
             faults.push(format!("{}: nothing walks its table", table.format));
             continue;
@@ -105,7 +106,7 @@ fn every_field_of_every_table_is_honoured_warned_about_or_refused() {
 #[test]
 fn a_field_that_is_not_handled_is_found() {
     let walkers = table::walkers();
-    for table in tables() {
+    for table in field_tables() {
         let Some(walker) = walker_of(&walkers, &table) else {
             continue;
         };
@@ -131,7 +132,7 @@ fn unknown(name: &str) -> String {
 
 #[test]
 fn tables_and_walkers_belong_together_and_hold_each_row_once() {
-    let (tables, walkers) = (tables(), table::walkers());
+    let (tables, walkers) = (field_tables(), table::walkers());
     for walker in &walkers {
         let known = tables.iter().any(|table| table.format == walker.format);
         assert!(known, "{}: a walker without a table", walker.format);

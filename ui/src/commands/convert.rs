@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
+use pickglass::atomic;
 use pickglass::design::Design;
 use pickglass::formats::jc5::{self, LoomPreset, WriteOptions};
-use pickglass::formats::{self, atomic, output, read_bytes};
+use pickglass::formats::{self, output, read_bytes};
 use serde_json::json;
 
 use super::note_warnings;
 use crate::cli::ConvertArgs;
-use crate::idle;
 use crate::opened::{self, Opened};
-use crate::out;
+use crate::{idle, out};
 
 pub fn run(args: &ConvertArgs) -> anyhow::Result<()> {
     let mut inputs = Opened::inputs(&args.input, &args.image);

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use pickglass::atomic;
 use pickglass::design::{Structure, Yarn, YarnId, YarnMap};
-use pickglass::formats::{LoadOptions, atomic, load, output, photo, ron};
+use pickglass::formats::{LoadOptions, load, output, photo, ron};
 use pickglass::posterise::{Fit, PosteriseSettings, Posterised, posterise};
 use serde_json::{Value, json};
 

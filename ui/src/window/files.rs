@@ -6,12 +6,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use egui::RichText;
+use pickglass::atomic;
 use pickglass::design::Design;
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
-use pickglass::formats::pdf::{self, PdfOptions};
 use pickglass::formats::photo::{self, Photo};
-use pickglass::formats::{self, SaveOptions, atomic, jc5, output};
+use pickglass::formats::{self, SaveOptions, jc5, output};
+use pickglass::print::{self, PdfOptions};
 use pickglass::text::with_causes;
 
 use super::image_form::{self, ImageForm};
@@ -614,7 +615,7 @@ fn print(design: &Design, turned: bool, path: &Path) -> Result<(), String> {
         turned,
         ..PdfOptions::default()
     };
-    let pages = pdf::write(design, &design.weave(), &options);
+    let pages = print::write(design, &design.weave(), &options);
     let bytes = pages.map_err(|error| error.to_string())?;
     atomic::write(path, &bytes).map_err(|error| error.to_string())
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use egui::containers::menu::MenuConfig;
 use egui::{Button, Grid, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
-use pickglass::formats::presets;
-use pickglass::render::{PRESET_NAMES, View};
+use pickglass::presets;
+use pickglass::scene::{PRESET_NAMES, View};
 use pickglass::still::LightChoice;
 use pickglass::text::visible;
 

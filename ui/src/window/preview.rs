@@ -6,7 +6,8 @@ use std::time::Instant;
 use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
-use pickglass::render::{Backing, View};
+use pickglass::render::Backing;
+use pickglass::scene::View;
 use pickglass::still::{EffectChoice, Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::text::visible;
 

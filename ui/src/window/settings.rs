@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pickglass::formats::atomic;
+use pickglass::atomic;
 use serde::{Deserialize, Serialize};
 
 use super::layout::KeptLayout;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Color32, Rect, RichText, Sense, Stroke, vec2};
 use pickglass::edit::recovery::Found;
-use pickglass::formats::presets;
+use pickglass::presets;
 use pickglass::text::visible;
 
 use super::autosave::ago;

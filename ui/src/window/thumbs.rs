@@ -10,7 +10,7 @@ use egui::{ColorImage, TextureHandle, TextureOptions};
 use pickglass::design::{Colouring, Design, SwatchWindow, WeavePattern, swatch};
 use pickglass::edit::recovery;
 use pickglass::job::Job;
-use pickglass::render::View;
+use pickglass::scene::View;
 use pickglass::still::{Engine, FirstSight, SightTables, StillRequest, usual_width_mm};
 use pickglass::text::visible;
 

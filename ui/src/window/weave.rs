@@ -1,7 +1,7 @@
 //! The commands that change the weave, and those of the clipboard.
 
-use pickglass::design::WeavePattern;
-use pickglass::edit::{Cells, Clip, Direction, Edit, Rect};
+use pickglass::design::{Direction, WeavePattern};
+use pickglass::edit::{Cells, Clip, Edit, Rect};
 
 use super::app::App;
 use super::forms::Form;

@@ -3,7 +3,7 @@
 use crate::program::Place;
 use glam::Vec3;
 use pickglass::formats::exr::read_environment;
-use pickglass::render::{Environment as _, EnvironmentImage};
+use pickglass::scene::{Environment as _, EnvironmentImage};
 
 /// Brightness of the left and the right edge of the bar, as `sides.py` measures it.
 fn sides(place: &Place, light: &str) -> [f32; 2] {

@@ -2,7 +2,7 @@
 
 use crate::program::{Place, Said};
 use pickglass::formats::exr::read_environment;
-use pickglass::render::{Environment as _, EnvironmentImage};
+use pickglass::scene::{Environment as _, EnvironmentImage};
 
 fn still(place: &Place, light: &str) -> (Vec<f32>, Said) {
     let said = place

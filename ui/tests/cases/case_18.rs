@@ -3,7 +3,7 @@
 use crate::program::Place;
 use glam::Vec3;
 use pickglass::formats::exr::{encode_rgb, read_environment};
-use pickglass::render::{Environment as _, EnvironmentImage};
+use pickglass::scene::{Environment as _, EnvironmentImage};
 
 fn still(place: &Place, light: &str) -> (f32, serde_json::Value) {
     let said = place

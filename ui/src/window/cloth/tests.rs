@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
-use pickglass::formats::presets;
+use pickglass::presets;
 use pickglass::still::{EffectBase, EffectChoice, LightChoice};
 
 use crate::window::action::Action;

@@ -2,8 +2,8 @@
 //! a touch asks for.
 
 use egui::Rect;
-use pickglass::design::{Design, Draft, Lifting, Structure, YarnId};
-use pickglass::edit::{Direction, Edit};
+use pickglass::design::{Design, Direction, Draft, Lifting, Structure, YarnId};
+use pickglass::edit::Edit;
 
 use super::super::action::Button;
 use super::areas::Areas;

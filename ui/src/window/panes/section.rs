@@ -1,15 +1,14 @@
 //! A cut through the cloth along an end or a pick: how the threads pass over and under.
 
 use egui::{RichText, Sense, Shape, Stroke, pos2, vec2};
-use pickglass::design::{Srgb, YarnId};
+use pickglass::design::{Direction, Srgb, YarnId};
 use pickglass::edit::Document;
 use pickglass::text::visible;
-use pickglass::yarn::{CrossSection, Direction, MOST_CROSSINGS, cross_section};
+use pickglass::yarn::{CrossSection, MOST_CROSSINGS, cross_section};
 
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
-use crate::window::crossing;
-use crate::window::typing;
+use crate::window::{crossing, typing};
 
 /// Width of a crossing, points.
 const CROSSING: f32 = 30.0;

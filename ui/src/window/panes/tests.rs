@@ -4,7 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pickglass::design::{Lattice, Repeat, Structure};
 use pickglass::edit::{Document, Edit};
-use pickglass::formats::presets;
+use pickglass::presets;
 
 use super::{Pane, Panes};
 use crate::window::action::{Action, Mark};

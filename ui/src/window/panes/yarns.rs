@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use egui::{DragValue, RichText, ScrollArea, TextEdit};
 use pickglass::design::checks::{Interlacing, YarnNeed, take_up, yarn_needs};
-use pickglass::design::{CountUnit, Design, Family, Yarn, YarnId, stripes};
-use pickglass::edit::{Direction, Document, Edit};
+use pickglass::design::{CountUnit, Design, Direction, Family, Yarn, YarnId, stripes};
+use pickglass::edit::{Document, Edit};
 use pickglass::text::visible;
 
 use super::dragging::Dragging;

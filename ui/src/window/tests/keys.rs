@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers, Rect, Vec2};
 use egui_kittest::kittest::{By, NodeT, Queryable};
-use pickglass::render::View;
+use pickglass::scene::View;
 
 use super::files::modified;
 use super::pictures::renderer;

@@ -63,8 +63,7 @@ fn the_menus_open_presets_and_change_the_view() {
         .expect("a menu item")
         .click();
     wait_for(&mut window, "the back", |window| {
-        window.state().preview.asked().map(|asked| asked.view)
-            == Some(pickglass::render::View::Back)
+        window.state().preview.asked().map(|asked| asked.view) == Some(pickglass::scene::View::Back)
     });
 }
 

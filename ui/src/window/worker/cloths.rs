@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use pickglass::cloth::YarnClasses;
 use pickglass::job::Job;
-use pickglass::render::View;
+use pickglass::scene::View;
 use pickglass::still::{self, Followed, PreparedCloth, StillError, StillRequest, UnfinishedCloth};
 
 use super::{Building, Desk, Fibres, Phase, PreviewRequest};

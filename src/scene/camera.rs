@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 
-use super::medium::Ray;
+use super::Ray;
 
 /// How rays leave the film.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::environment::luminance;
+use crate::scene::environment::luminance;
 
 /// What one path brings home.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -225,7 +225,7 @@ impl Film {
         &mut self.pixels
     }
 
-    pub(super) fn finish_pass(&mut self, spp: u32) {
+    pub(crate) fn finish_pass(&mut self, spp: u32) {
         self.spp += spp;
     }
 }

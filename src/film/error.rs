@@ -1,7 +1,7 @@
 //! How far a picture is from done: `error` = √mean(Var/(mean²+0.01²)) over pixels, where
 //! Var is the variance of the pixel's mean luminance, before denoising.
 
-use super::film::Film;
+use super::Film;
 
 /// Luminance below which errors count absolutely: 0.01 of a white diffuser.
 pub const DARK: f64 = 0.01;

@@ -9,9 +9,9 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::environment::luminance;
-use super::film::{Film, Pixel};
+use super::{Film, Pixel};
 use crate::job::{Cancelled, Job};
+use crate::scene::environment::luminance;
 
 /// How strongly to denoise.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -431,11 +431,11 @@ mod tests {
             [1e-45, 1e-45],
         ] {
             let pixels = [above, above, below, below].map(Vec3::splat).to_vec();
-            let rig = crate::render::LightRig::from_image(
+            let rig = crate::scene::LightRig::from_image(
                 "x",
                 EnvironmentImage::new(2, 2, pixels).unwrap(),
             );
-            let crate::render::Sky::Image(picture) = rig.unwrap().sky else {
+            let crate::scene::Sky::Image(picture) = rig.unwrap().sky else {
                 panic!("a picture")
             };
             let up = picture.radiance(Vec3::Z);

@@ -30,7 +30,7 @@ impl Sun {
             return self.towards;
         }
         // Uniform on the disk in the tangent plane: right for small disks.
-        let (x, y) = super::random::disk(u);
+        let (x, y) = crate::random::disk(u);
         let (a, b) = self.towards.any_orthonormal_pair();
         let radius = self.angular_radius.min(1.5).tan();
         (self.towards + (a * x + b * y) * radius).normalize_or(self.towards)

@@ -1,39 +1,36 @@
 //! Designs embedded in the program.
 
-use super::ron::{self, RonError};
 use crate::design::Design;
+use crate::formats::ron::{self, RonError};
 
 /// Name and document of each.
 const DESIGNS: [(&str, &str); 11] = [
-    ("default", include_str!("../../presets/designs/default.ron")),
+    ("default", include_str!("../presets/designs/default.ron")),
     (
         "herringbone",
-        include_str!("../../presets/designs/herringbone.ron"),
+        include_str!("../presets/designs/herringbone.ron"),
     ),
-    (
-        "twills-9",
-        include_str!("../../presets/designs/twills-9.ron"),
-    ),
+    ("twills-9", include_str!("../presets/designs/twills-9.ron")),
     (
         "wavy-twill",
-        include_str!("../../presets/designs/wavy-twill.ron"),
+        include_str!("../presets/designs/wavy-twill.ron"),
     ),
-    ("damask", include_str!("../../presets/designs/damask.ron")),
+    ("damask", include_str!("../presets/designs/damask.ron")),
     (
         "twill-satin",
-        include_str!("../../presets/designs/twill-satin.ron"),
+        include_str!("../presets/designs/twill-satin.ron"),
     ),
-    ("denim", include_str!("../../presets/designs/denim.ron")),
-    ("tweed", include_str!("../../presets/designs/tweed.ron")),
+    ("denim", include_str!("../presets/designs/denim.ron")),
+    ("tweed", include_str!("../presets/designs/tweed.ron")),
     (
         "linen-plain",
-        include_str!("../../presets/designs/linen-plain.ron"),
+        include_str!("../presets/designs/linen-plain.ron"),
     ),
     (
         "silk-satin",
-        include_str!("../../presets/designs/silk-satin.ron"),
+        include_str!("../presets/designs/silk-satin.ron"),
     ),
-    ("oxford", include_str!("../../presets/designs/oxford.ron")),
+    ("oxford", include_str!("../presets/designs/oxford.ron")),
 ];
 
 /// Names of the embedded designs, the one to open with first.

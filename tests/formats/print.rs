@@ -6,7 +6,7 @@ use pickglass::design::{
     Design, Draft, Family, Filled, Lifting, Sett, Shed, Srgb, Structure, Ties, WeavePattern, Yarn,
     YarnId, YarnMaps, usual_sett,
 };
-use pickglass::formats::pdf::{self, Paper, PdfError, PdfOptions, Raster};
+use pickglass::print::{self, Paper, PdfError, PdfOptions, Raster};
 
 fn design(structure: Structure) -> Design {
     let yarns = vec![
@@ -42,7 +42,7 @@ fn pages(bytes: &[u8]) -> usize {
 fn a_draft_its_lists_and_the_cloth_are_three_pages() {
     let design = point_twill();
     let weave = design.weave();
-    let bytes = pdf::write(&design, &weave, &PdfOptions::default()).unwrap();
+    let bytes = print::write(&design, &weave, &PdfOptions::default()).unwrap();
     assert!(bytes.starts_with(b"%PDF-"));
     assert_eq!(pages(&bytes), 3);
     let lists = PdfOptions {
@@ -50,14 +50,14 @@ fn a_draft_its_lists_and_the_cloth_are_three_pages() {
         cloth: false,
         ..PdfOptions::default()
     };
-    assert_eq!(pages(&pdf::write(&design, &weave, &lists).unwrap()), 1);
+    assert_eq!(pages(&print::write(&design, &weave, &lists).unwrap()), 1);
     let text = String::from_utf8_lossy(&bytes).into_owned();
     assert!(text.contains("/MediaBox [0 0 595.27"), "A4");
     let letter = PdfOptions {
         paper: Paper::Letter,
         ..PdfOptions::default()
     };
-    let bytes = pdf::write(&design, &weave, &letter).unwrap();
+    let bytes = print::write(&design, &weave, &letter).unwrap();
     assert!(
         String::from_utf8_lossy(&bytes).contains("/MediaBox [0 0 612"),
         "Letter"
@@ -70,7 +70,7 @@ fn a_draft_its_lists_and_the_cloth_are_three_pages() {
             draft: false,
             ..PdfOptions::default()
         };
-        let bytes = pdf::write(&large, &large.weave(), &options).unwrap();
+        let bytes = print::write(&large, &large.weave(), &options).unwrap();
         std::fs::write(format!("{folder}/panel.pdf"), &bytes).unwrap();
     }
 }
@@ -92,18 +92,18 @@ fn what_does_not_fit_is_refused_with_a_remedy() {
         lists: false,
         ..PdfOptions::default()
     };
-    let refused = pdf::write(&large, &weave, &only(true, false)).unwrap_err();
+    let refused = print::write(&large, &weave, &only(true, false)).unwrap_err();
     assert!(matches!(
         refused,
         PdfError::TooManyPages { part: "draft", .. }
     ));
     assert!(refused.to_string().contains("crop"), "{refused}");
     assert_eq!(
-        pdf::write(&large, &weave, &only(false, false)),
+        print::write(&large, &weave, &only(false, false)),
         Err(PdfError::Nothing)
     );
     // 1.7 m × 3.15 m of cloth.
-    let refused = pdf::write(&large, &weave, &only(false, true)).unwrap_err();
+    let refused = print::write(&large, &weave, &only(false, true)).unwrap_err();
     assert!(matches!(
         refused,
         PdfError::TooManyPages { part: "cloth", .. }
@@ -114,7 +114,7 @@ fn what_does_not_fit_is_refused_with_a_remedy() {
             pixels,
             width_mm,
         });
-        pdf::write(
+        print::write(
             &large,
             &weave,
             &PdfOptions {

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::film::Film;
-use crate::formats::png::Picture;
+use super::Film;
+use crate::film::Picture;
 
 /// Share of a white diffuser up to which the curve changes nothing.
 pub const IDENTITY_UP_TO: f32 = 0.9;

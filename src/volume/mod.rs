@@ -13,7 +13,8 @@ mod walk;
 use glam::{IVec3, Mat3, UVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::render::{Bounds, Medium, Ray, Voxel};
+use crate::render::{Medium, Voxel};
+use crate::scene::{Bounds, Ray};
 
 pub use walk::GridWalk;
 

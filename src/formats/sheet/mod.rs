@@ -1,18 +1,23 @@
 //! What draft and loom files have in common: threads, colours and spacings become a design.
 //!
 //! Each reader fills in a [`Sheet`]; the rules by which yarns, sett and name are made of it
-//! are here and in `wif::threads`, once for all formats.
+//! are here and in `threads`, once for all formats.
+
+pub(super) mod text;
+pub(super) mod threads;
+mod warnings;
 
 use std::sync::Arc;
 
 use std::fmt;
 
-use super::wif::threads::{self, Direction, Spacing, Threads};
-use super::{Imported, LoadOptions, stem};
+use super::reading::{Imported, LoadOptions, stem};
 use crate::design::{
-    Design, Draft, Family, FirstEnd, FirstPick, ForeignSection, Lifting, Origin, Srgb, Structure,
-    YarnMaps, usual_sett,
+    Design, Direction, Draft, Family, FirstEnd, FirstPick, ForeignSection, Lifting, Origin, Srgb,
+    Structure, YarnMaps, usual_sett,
 };
+use threads::{Spacing, Threads};
+pub(super) use warnings::Warnings;
 
 /// Where in a file something is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,49 +82,6 @@ impl SheetError {
             None => self.file.clone(),
         };
         format!("{place}: {}; {}", self.problem, self.remedy)
-    }
-}
-
-/// Most warnings that are written out; a broken file can give one a line.
-const MAX_WARNINGS: usize = 40;
-
-/// What a reader had to decide for itself.
-#[derive(Debug, Default)]
-pub(super) struct Warnings {
-    list: Vec<String>,
-    more: usize,
-}
-
-impl Warnings {
-    pub fn at(&mut self, line: u32, what: impl AsRef<str>) {
-        self.add(|| format!("line {line}: {}", what.as_ref()));
-    }
-
-    /// One warning more that nobody would read: not worth its words.
-    pub fn flooded(&mut self) -> bool {
-        let full = self.list.len() >= MAX_WARNINGS;
-        self.more += usize::from(full);
-        full
-    }
-
-    pub fn whole(&mut self, what: impl Into<String>) {
-        self.add(|| what.into());
-    }
-
-    fn add(&mut self, what: impl FnOnce() -> String) {
-        if self.list.len() < MAX_WARNINGS {
-            self.list.push(what());
-        } else {
-            self.more += 1;
-        }
-    }
-
-    pub fn finish(mut self) -> Vec<String> {
-        if self.more > 0 {
-            self.list
-                .push(format!("and {} more of this kind", self.more));
-        }
-        self.list
     }
 }
 
