@@ -114,6 +114,19 @@ impl FaceTable {
         let [x, y] = [u, v].map(|place| ((place * side as f32) as usize).min(side - 1));
         self.levels[level][(usize::from(key & 31) * side + y) * side + x]
     }
+
+    /// One of the finest texels, counted from the lower left.
+    #[inline]
+    pub fn texel(&self, key: u8, [x, y]: [usize; 2]) -> Texel {
+        let last = TEXELS - 1;
+        self.levels[0][(usize::from(key & 31) * TEXELS + y.min(last)) * TEXELS + x.min(last)]
+    }
+
+    /// Whether pixels are so much smaller than the finest texels, at this many a crossing,
+    /// that texels would be seen as squares.
+    pub fn shows_texels(pixels: f32) -> bool {
+        pixels > 1.5 * TEXELS as f32
+    }
 }
 
 /// A level of a finest table.

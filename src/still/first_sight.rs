@@ -18,7 +18,7 @@ use super::prepare::coloured;
 use super::request::LightChoice;
 use super::{StillError, StillRequest};
 use crate::cloth::colour::colours_on_top;
-use crate::cloth::{FaceRelief, FaceTable, YarnClasses};
+use crate::cloth::{FaceRelief, FaceTable, TEXELS, Texel, YarnClasses};
 use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
 use crate::film::Tone;
@@ -131,6 +131,8 @@ struct Sight<'d> {
     ends: Positions,
     picks: Positions,
     level: usize,
+    /// Pixels are smaller than the finest texels.
+    close: bool,
     samples: usize,
     curve: Vec<u8>,
     backing: Backing,
@@ -146,6 +148,16 @@ struct Crossing {
     warp: YarnId,
     weft: YarnId,
     colours: [Vec3; 2],
+}
+
+impl Crossing {
+    /// Light and cover of a texel in the yarns of this crossing.
+    #[inline]
+    fn lit(&self, table: &FaceTable, texel: Texel) -> (Vec3, f32) {
+        let [warp, weft] = self.colours;
+        let light = warp * texel.warp + weft * texel.weft;
+        (light * table.tint(), texel.cover)
+    }
 }
 
 impl Engine for FirstSight {
@@ -260,6 +272,7 @@ impl FirstSight {
             ends,
             picks,
             level: FaceTable::level(pixels),
+            close: FaceTable::shows_texels(pixels),
             samples: ((1.0 / pixels).ceil() as usize).clamp(1, MOST_SAMPLES),
             curve,
             backing: request.backing,
@@ -398,13 +411,55 @@ impl Sight<'_> {
     /// Light and cover of a place of a crossing.
     #[inline]
     fn light(&self, crossing: &Crossing, u: f32, v: f32) -> (Vec3, f32) {
+        if self.close {
+            return self.light_between(crossing, u, v);
+        }
         let Some(table) = self.tables.get(usize::from(crossing.set)) else {
             return (Vec3::ZERO, 0.0);
         };
-        let texel = table.at(self.level, crossing.key, u, v);
-        let [warp, weft] = crossing.colours;
-        let light = warp * texel.warp + weft * texel.weft;
-        (light * table.tint(), texel.cover)
+        crossing.lit(table, table.at(self.level, crossing.key, u, v))
+    }
+
+    /// As [`Self::light`] where pixels are smaller than the finest texels: in proportion
+    /// between the four around the place, across the borders of crossings too, so that neither
+    /// texels nor crossings are seen as tiles.
+    fn light_between(&self, here: &Crossing, u: f32, v: f32) -> (Vec3, f32) {
+        let [x, y] = [u, v].map(|place| place.clamp(0.0, 1.0) * TEXELS as f32 - 0.5);
+        // Texel and crossing, seen from this one, of each neighbour along a direction.
+        let beside = |at: f32| {
+            let (first, share) = (at.floor(), at - at.floor());
+            [(first as i64, 1.0 - share), (first as i64 + 1, share)].map(|(texel, share)| {
+                let side = TEXELS as i64;
+                (texel.div_euclid(side), texel.rem_euclid(side), share)
+            })
+        };
+        let mut sum = (Vec3::ZERO, 0.0);
+        for (picks, row, along) in beside(y) {
+            for (ends, column, across) in beside(x) {
+                let mut texel = [column as usize, row as usize];
+                let there = match (ends, picks) {
+                    (0, 0) => Some(*here),
+                    _ => self.crossing(here.end + ends, here.pick + picks),
+                };
+                let crossing = there.unwrap_or_else(|| {
+                    // The cloth ends: its border stands for what is not there.
+                    let border = |offset: i64, own: usize| match offset {
+                        0 => own,
+                        -1 => 0,
+                        _ => TEXELS - 1,
+                    };
+                    texel = [border(ends, texel[0]), border(picks, texel[1])];
+                    *here
+                });
+                let Some(table) = self.tables.get(usize::from(crossing.set)) else {
+                    continue;
+                };
+                let (light, cover) = crossing.lit(table, table.texel(crossing.key, texel));
+                let weight = along * across;
+                sum = (sum.0 + light * weight, sum.1 + cover * weight);
+            }
+        }
+        sum
     }
 
     #[inline]

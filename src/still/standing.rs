@@ -42,7 +42,9 @@ impl Standing {
     /// Of sRGB with straight alpha, top row first; `None` where the sizes do not agree.
     pub fn of_rgba(width: u32, height: u32, rgba: &[u8]) -> Option<Self> {
         let linear: Vec<f32> = (0..=255u8)
-            .map(|value| uncurve(decode_srgb(f32::from(value) / 255.0)))
+            // White is all that is brighter as well: taken as the step that it begins with, so
+            // that no channel runs away from the others.
+            .map(|value| uncurve(decode_srgb(f32::from(value).min(254.5) / 255.0)))
             .collect();
         let pixels = rgba.chunks_exact(4).map(|pixel| {
             let alpha = f32::from(pixel[3]) / 255.0;

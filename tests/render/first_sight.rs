@@ -10,6 +10,7 @@ use pickglass::design::{
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::presets;
+use pickglass::render::Backing;
 use pickglass::scene::View;
 use pickglass::still::{Engine, FirstSight, LightChoice, SightTables, StillRequest, Stop, prepare};
 
@@ -265,5 +266,46 @@ fn a_large_jacquard_is_seen_whole() {
             let covered = rgba.chunks(4).filter(|pixel| pixel[3] > 200).count();
             assert!(covered > 900 * 700 * 9 / 10, "{covered}");
         }
+    }
+}
+
+/// Steps of green from one pixel of cloth to the next, across and down: the sum of their
+/// squares.
+fn unevenness(rgba: &[u8], width: usize) -> f64 {
+    let pixels = rgba.len() / 4;
+    let step = |[a, b]: [usize; 2]| {
+        let cloth = [a, b].iter().all(|at| rgba[4 * at + 3] == u8::MAX);
+        cloth.then(|| f64::from(rgba[4 * a + 1].abs_diff(rgba[4 * b + 1])).powi(2))
+    };
+    let across = (0..pixels - 1).filter(|at| (at + 1) % width > 0);
+    let across = across.map(|at| [at, at + 1]);
+    let down = (width..pixels).map(|at| [at - width, at]);
+    across.chain(down).filter_map(step).sum()
+}
+
+#[test]
+fn close_by_neither_texels_nor_crossings_are_tiles() {
+    const CLOSER: u32 = 8;
+    for name in ["oxford", "default"] {
+        let design = design(name);
+        let sett = design.sett();
+        let pitch = (sett.ends.mean_pitch_mm()).max(sett.picks.mean_pitch_mm());
+        let look = |pixels: u32| {
+            let request = StillRequest {
+                width: 4 * pixels,
+                height: 4 * pixels,
+                width_mm: Some(4.0 * pitch),
+                backing: Backing::Itself,
+                ..request(View::Face, "day")
+            };
+            let name = format!("{name} with {pixels} pixels a crossing");
+            let rgba = picture(&first(&design), &request, &name);
+            unevenness(&rgba, 4 * pixels as usize)
+        };
+        // With pixels as large as texels, each of them made so many across and down.
+        let tiles = f64::from(CLOSER) * look(12);
+        let close = look(12 * CLOSER);
+        println!("{name}: {:.2} of what tiles would be", close / tiles);
+        assert!(close < 0.3 * tiles, "{name}: {close} {tiles}");
     }
 }

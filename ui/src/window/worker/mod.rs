@@ -21,7 +21,7 @@ use std::time::Instant;
 use pickglass::design::{Design, WeavePattern};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::{Cancelled, Job};
-use pickglass::still::{SightTables, StillError, StillRequest, Stop};
+use pickglass::still::{SightTables, StillError, StillRequest, Stop, usual_width_mm};
 
 use cloths::{Builder, Kept, cloth_of, first_sight_serves};
 use drawing::{Drawing, OnScreen, PATIENCE};
@@ -358,6 +358,28 @@ impl FirstLevel {
     }
 }
 
+/// Pixels a crossing from which a film tells more of it than first sight does.
+const TELLING: f32 = 12.0;
+
+/// Samples a pixel of a film that is halved: as long as one of the next size takes.
+const COARSE_SAMPLES: u32 = 4;
+
+/// How often a film may be halved so that it still tells more than first sight. What coarse
+/// films know of crossings as large as their pixels is worse than that where light and dark
+/// yarns lie side by side; of the slant of a view first sight knows nothing.
+fn coarsest_film(request: &PreviewRequest) -> u32 {
+    let still = &request.still;
+    if !first_sight_serves(still) {
+        return u32::MAX;
+    }
+    let sett = request.design.sett();
+    let pitch = (sett.ends.mean_pitch_mm()).min(sett.picks.mean_pitch_mm());
+    let width = (still.width_mm).unwrap_or_else(|| usual_width_mm(still.view, &request.design));
+    let pixels = pitch * still.width as f32 / width;
+    // Nothing is halved where the size is none.
+    (pixels / TELLING).log2().max(0.0) as u32
+}
+
 /// What the drawing thread keeps from one request to the next.
 struct Kit {
     coarse: Option<Kept>,
@@ -468,27 +490,16 @@ fn serve(
     };
     desk.set_phase(Phase::Refining);
     let mut refine = || {
-        let seconds = |seconds: f64| Stop {
-            seconds: Some(seconds.max(0.0)),
-            ..Stop::default()
-        };
-        // What coarse films know of crossings as large as their pixels is worse than first
-        // sight where light and dark yarns lie side by side.
-        let coarsest = match first_sight_serves(&request.still) {
-            true => 0,
-            false => first.0,
-        };
-        let mut level = coarsest;
-        let mut spent = 0.0;
-        while level > 0 {
-            // Stay until as much time was spent as one pass of the next size will take.
-            let left = 4.0 * spent - drawing.begun.elapsed().as_secs_f64();
-            let traced = drawing.trace(&cloth, fibres, level, seconds(left), screen)?;
-            if spent == 0.0 {
+        let coarsest = coarsest_film(request).min(first.0);
+        for level in (1..=coarsest).rev() {
+            let stop = Stop {
+                spp: Some(COARSE_SAMPLES),
+                ..Stop::default()
+            };
+            let traced = drawing.trace(&cloth, fibres, level, stop, screen)?;
+            if level == coarsest {
                 first.learn(traced.pass_seconds * 1e3);
             }
-            spent = 4.0 * traced.pass_seconds;
-            level -= 1;
         }
         let good = request.quality.error();
         let stop = Stop {

@@ -11,7 +11,9 @@ use pickglass::job::Job;
 use pickglass::still::{PreparedCloth, SightTables, StillRequest, Stop, prepare_woven};
 
 use super::drawing::{Drawing, OnScreen};
-use super::{Aim, Desk, Fibres, Picture, PreviewRequest, Quality, Shared};
+use super::{
+    Aim, COARSE_SAMPLES, Desk, Fibres, Picture, PreviewRequest, Quality, Shared, coarsest_film,
+};
 use preview_views::{PreviewView, SIZE, reference, squares, visits};
 
 #[path = "../../../../tests/common/preview_views/mod.rs"]
@@ -80,8 +82,8 @@ fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
 /// Designs that are also looked at from elsewhere and edited.
 const FOLLOWED: usize = 1;
 
-/// Steps of one request: halvings of the size, samples a pixel.
-const STEPS: [(u32, u32); 1] = [(0, 5)];
+/// Samples a pixel of the film in full size; coarser ones go before it as in the program.
+const SAMPLES: u32 = 5;
 
 /// What is shown of a view, and what was shown before: whatever was traced replaced what
 /// stood there, from a quarter of a path a pixel on.
@@ -138,7 +140,9 @@ fn watch(
     let still = &request.still;
     let cloth = prepare_woven(&view.design, &view.drawdown, still, &desk.store, &job);
     let cloth = cloth.expect("a cloth");
-    for (level, spp) in STEPS {
+    let coarse = (1..=coarsest_film(&request)).rev();
+    let steps = coarse.map(|level| (level, COARSE_SAMPLES));
+    for (level, spp) in steps.chain([(0, SAMPLES)]) {
         let stop = Stop {
             spp: Some(spp),
             ..Stop::default()
