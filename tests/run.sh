@@ -3,8 +3,8 @@
 #
 #   bash tests/run.sh            all checks
 #   bash tests/run.sh --bench    the measurements instead, printed and never asserted
-#   bash tests/run.sh --soak     what takes long: references that are missing, and the
-#                                preview's first minute by the clock, printed
+#   bash tests/run.sh --soak     what takes long: references that are missing, all views of
+#                                the preview, and its first minute by the clock, printed
 #
 # Installs what it needs when it may (root and apt-get); otherwise it says what is
 # missing and goes on, and the tests that need it say so. With CI=true nothing that is
@@ -315,21 +315,28 @@ measure_all() {
 }
 
 # The first minute of the preview by the clock, alone and with every core loaded.
-first_minute() {
-    local loads=() core
+first_minute() (
+    loads=()
+    trap '((${#loads[@]} == 0)) || kill "${loads[@]}"' EXIT
     if [[ $1 == loaded ]]; then
         for core in $(seq "$(nproc)"); do
-            (while :; do :; done) &
+            (trap - EXIT ERR; while :; do :; done) &
             loads+=($!)
         done
     fi
     PICKGLASS_SOAK=20 cargo test --release --workspace --quiet --bin pickglass -- \
-        --nocapture --test-threads 1 never_worse || { kill "${loads[@]}"; return 1; }
-    ((${#loads[@]} == 0)) || kill "${loads[@]}"
+        --nocapture --test-threads 1 first_minute_by_the_clock
+)
+
+# All views of the preview with a number of paths in the place of the clock.
+never_worse() {
+    PICKGLASS_SOAK=1 cargo test --release --workspace --quiet --bin pickglass -- \
+        --nocapture --test-threads 1 no_picture_that_is_shown
 }
 
 soak_all() {
     step "references" cargo bench --bench preview_references --profile release
+    step "never worse" never_worse
     step "first minute" first_minute alone
     step "first minute, cores loaded" first_minute loaded
 }
