@@ -55,6 +55,10 @@ fn picture_of_a_design() {
     let mut window = build(builder().renderer(renderer), Some("herringbone"));
     // The cloth itself is another test's business: stop it before it is drawn.
     window.state_mut().preview.freeze();
+    // Floats are looked for on a thread.
+    wait_for(&mut window, "the floats", |window| {
+        shows(window, "No float is longer than the limit.")
+    });
     window.run_steps(5);
     window.snapshot_options("herringbone", &tolerance());
 }
