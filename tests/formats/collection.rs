@@ -1,7 +1,7 @@
 //! Every file of the collections of real drafts and images, as one table: read, read with
 //! a warning, or refused, as its folder or name says.
 //!
-//! `cargo test --release --test collection -- --nocapture` prints it. The collections are
+//! `cargo test --release --workspace --test formats collection -- --nocapture` prints it. The collections are
 //! not part of the project; where they are absent this says so and passes, unless
 //! `GOLDEN_REQUIRED=1` demands them.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
@@ -22,7 +22,7 @@ enum Fate {
 
 /// A folder beside the project, or where a variable says; `None` after saying that it is
 /// missing.
-fn folder(variable: &str, beside: &str) -> Option<PathBuf> {
+pub(crate) fn folder(variable: &str, beside: &str) -> Option<PathBuf> {
     let folder = std::env::var_os(variable).map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join(beside),
         PathBuf::from,

@@ -8,26 +8,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::collection::folder;
 use pickglass::design::{Design, Srgb, WeavePattern};
 use pickglass::formats::{Imported, LoadOptions, Place, load, wif};
 
 /// The folder of drafts, or `None` after saying what is missing.
 fn drafts() -> Option<PathBuf> {
-    let folder = std::env::var_os("PICKGLASS_DRAFTS").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/drafts"),
-        PathBuf::from,
-    );
-    if folder.is_dir() {
-        return Some(folder.join("dtx_to_wif"));
-    }
-    let required = std::env::var("GOLDEN_REQUIRED").is_ok_and(|value| value == "1");
-    assert!(
-        !required,
-        "no drafts in {}: set PICKGLASS_DRAFTS",
-        folder.display()
-    );
-    eprintln!("not run: no drafts in {}", folder.display());
-    None
+    folder("PICKGLASS_DRAFTS", "../shared/drafts").map(|folder| folder.join("dtx_to_wif"))
 }
 
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {

@@ -9,6 +9,7 @@ mod mutation;
 
 mod collection;
 mod fields;
+mod floods;
 mod jc5;
 mod loom_drafts;
 mod loom_fixtures;

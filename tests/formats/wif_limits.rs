@@ -7,7 +7,8 @@
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-use crate::memory::{alone, peak, reset_peak};
+use crate::floods::read_flood;
+use crate::memory::alone;
 use pickglass::formats::{LoadOptions, load_bytes};
 
 const HEAD: &str = "[WEAVING]\nShafts=4\nTreadles=4\n[WARP]\nThreads=4\n[WEFT]\nThreads=4\n";
@@ -75,37 +76,6 @@ const FLOODS: [Flood; 13] = [
     }),
 ];
 
-/// Reads one flood in this process and prints what it took.
-fn read_flood(name: &str, make: fn() -> String) {
-    let mut bytes = make().into_bytes();
-    if name == "latin-1" {
-        bytes.retain(|&byte| byte != 0xc3);
-    }
-    let before = reset_peak();
-    let started = Instant::now();
-    let answer = load_bytes(&bytes, "flood", &LoadOptions::default());
-    let seconds = started.elapsed();
-    assert!(seconds < Duration::from_secs(10), "{name}: {seconds:?}");
-    let crossings = answer.as_ref().map_or(0, |imported| {
-        let design = &imported.design;
-        u64::from(design.ends()) * u64::from(design.picks())
-    });
-    let (Some(before), Some(after)) = (before, peak()) else {
-        println!("not measured: this system does not tell peak memory");
-        return;
-    };
-    let taken = after.saturating_sub(before);
-    println!(
-        "{name}: {} KiB file, {} KiB taken, {seconds:?}, {}",
-        bytes.len() >> 10,
-        taken >> 10,
-        answer.map_or_else(|error| error.to_string(), |_| "read".to_owned())
-    );
-    // A few MiB are the allocator's and the program's own pages.
-    let allowed = 4 * (bytes.len() as u64 + crossings / 8) + (4 << 20);
-    assert!(taken <= allowed, "{name}: {taken} of {allowed} bytes");
-}
-
 #[test]
 fn floods_take_neither_memory_nor_time() {
     // A process for each, so that none profits from memory another has left behind.
@@ -113,20 +83,12 @@ fn floods_take_neither_memory_nor_time() {
     let test = concat!(module_path!(), "::floods_take_neither_memory_nor_time");
     if let Some(name) = alone(test, &names) {
         let (name, make) = FLOODS.iter().find(|flood| flood.0 == name).unwrap();
-        read_flood(name, *make);
+        let mut bytes = make().into_bytes();
+        if *name == "latin-1" {
+            bytes.retain(|&byte| byte != 0xc3);
+        }
+        read_flood(name, &bytes);
     }
-}
-
-#[test]
-fn the_measure_of_memory_can_fail() {
-    let test = concat!(module_path!(), "::the_measure_of_memory_can_fail");
-    if alone(test, &[""]).is_none() {
-        return;
-    }
-    let Some(before) = reset_peak() else { return };
-    let large = vec![1u8; 48_000_000];
-    assert!(std::hint::black_box(&large).len() > 1);
-    assert!(peak().unwrap() - before > 4 * 6_000_000 + (4 << 20));
 }
 
 #[test]
