@@ -33,7 +33,8 @@
 //! | [`edit`] | changes, undo, recovery | `atomic` `design` `formats` |
 //! | [`mod@print`] | a design as PDF | `text` `design` |
 //! | [`presets`] | designs inside the program | `design` `formats` |
-//! | [`still`] | a design becomes a picture | `random` `job` `memory` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` |
+//! | [`plan`] | what a picture simulates, and how closely | `synthesis` `exemplar` `render` `cloth` `formats` |
+//! | [`still`] | a design becomes a picture | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
 
 pub mod atomic;
 pub mod cloth;
@@ -46,6 +47,7 @@ pub mod hash;
 pub mod job;
 pub mod limits;
 pub mod memory;
+pub mod plan;
 pub mod posterise;
 pub mod presets;
 pub mod print;

@@ -12,6 +12,15 @@ use std::fmt::Write;
 
 use unicode_general_category::{GeneralCategory, get_general_category};
 
+/// `text` as one word of a POSIX shell, quoted where it has to be.
+pub fn shell_word(text: &str) -> Cow<'_, str> {
+    let plain = |sign: char| sign.is_ascii_alphanumeric() || "_./:=,+@%-".contains(sign);
+    match !text.is_empty() && text.chars().all(plain) {
+        true => Cow::Borrowed(text),
+        false => Cow::Owned(format!("'{}'", text.replace('\'', r"'\''"))),
+    }
+}
+
 /// Whether a sign is seen by what it does, not by its shape: control signs, line breaks,
 /// formatting (directions, zero widths, tags).
 fn is_hidden(sign: char) -> bool {

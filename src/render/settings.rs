@@ -3,9 +3,24 @@
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 
 /// What lies behind the cloth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Serialize,
+    Deserialize,
+    Display,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Backing {
     /// Nothing: the background shows through.
     #[default]
@@ -15,6 +30,7 @@ pub enum Backing {
     /// A black sheet that reflects nothing.
     Black,
     /// More layers of the cloth itself, see [`super::Stack`].
+    #[strum(serialize = "self")]
     Itself,
 }
 

@@ -4,6 +4,7 @@
 //! z out of the face. On film up is +y unless a view says otherwise.
 
 use glam::Vec3;
+use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 
 use super::Ray;
 
@@ -31,7 +32,20 @@ pub struct Camera {
 }
 
 /// The named views of a cloth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    Default,
+    Display,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum View {
     /// Straight on the face, without perspective: true scale everywhere.
     #[default]
@@ -49,28 +63,11 @@ pub enum View {
 
 impl View {
     /// All views, in the order in which they are offered.
-    pub const ALL: [Self; 5] = [
-        Self::Face,
-        Self::Back,
-        Self::Close,
-        Self::Oblique,
-        Self::Grazing,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// The name used on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Face => "face",
-            Self::Back => "back",
-            Self::Close => "close",
-            Self::Oblique => "oblique",
-            Self::Grazing => "grazing",
-        }
-    }
-
-    /// The view of a name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|view| view.name() == name)
+        self.into()
     }
 
     /// Whether the cloth is turned over; the light then wants

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 
-use super::{StillRequest, effects};
+use super::StillRequest;
 use crate::film::{Denoise, Film, Sample, Tone};
 use crate::formats::{exr, png};
 use crate::job::Job;
@@ -38,16 +38,16 @@ fn time(request: &StillRequest, tone: Tone) -> Duration {
     let rows = (MEASURED / width).clamp(1, height);
     let strip = noise(width, rows);
     let begun = Instant::now();
-    let clean = effects::denoises(&request.dials)
+    let showing = request.settings.showing;
+    let clean = (showing.denoise)
         .then(|| Denoise::default().apply(&strip, &Job::new()).ok())
         .flatten();
     let picture = match clean {
         Some(clean) => tone.picture_of(&strip, &clean),
         None => tone.picture(&strip),
     };
-    let depth = effects::png_depth(&request.dials);
     // What cannot be encoded takes no time; writing it says why.
-    let _ = png::encode(&picture, depth, &png::Metadata::default());
+    let _ = png::encode(&picture, showing.png_depth, &png::Metadata::default());
     let shown = begun.elapsed();
     let begun = Instant::now();
     let _ = exr::encode(&strip, 1.0, &[]);

@@ -4,10 +4,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::picture::{Pass, Shot, Still, Subject, ask_for_picture, camera_at, lights, settings};
-use super::{EffectBase, EffectChoice, StillError, StillRequest, finishing};
+use super::picture::{Pass, Shot, Shown, Still, ask_for_picture, camera_at, lights};
+use super::{StillError, StillRequest, finishing};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
+use crate::plan::{Effect, Subject};
 use crate::scene::{Bounds, Camera};
 use crate::volume::Taps;
 use crate::volume::source::Frame;
@@ -28,42 +29,26 @@ pub fn render_grid(
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<(Still, Vec<String>), StillError> {
-    let (_, settings, mut effects) = settings(request)?;
+    let plan = request.plan(Subject::Voxels)?;
     let begun = Instant::now();
-    let filtered = filtered(&request.effects);
-    let taps = if filtered {
-        Taps::StochasticTrilinear
-    } else {
-        Taps::Nearest
+    let taps = match plan.on(Effect::Tap) {
+        true => Taps::StochasticTrilinear,
+        false => Taps::Nearest,
     };
-    for (_, on) in effects.iter_mut().filter(|(name, _)| name == "tap") {
-        *on = filtered;
-    }
     ask_for_picture(request.width, request.height)?;
     let job = &finishing::bounded(request, job);
     let file = volume::read_scaled(path, taps, voxel_mm, job)?;
     let reading = ("reading".to_owned(), begun.elapsed().as_secs_f64());
-    // Only cloth has these.
-    effects.retain(|(name, _)| ["shadows", "multiple", "sky", "tap"].contains(&name.as_str()));
     let shot = Shot {
         camera: camera_over(crate::render::Medium::bounds(&file.grid), request)?,
         lights: lights(&request.light, request.view, request.turned)?,
-        settings,
+        plan,
         request,
     };
     let outcome = shot.expose(&file.grid, job, on_pass)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let subject = Subject::Volume(name.into_owned());
-    Ok((
-        shot.develop(outcome, vec![reading], effects, subject),
-        file.warnings,
-    ))
-}
-
-/// Whether voxels are filtered: only where that is asked for.
-fn filtered(choice: &EffectChoice) -> bool {
-    let named = choice.changes.iter().rev().find(|(name, _)| name == "tap");
-    named.map_or(choice.base == EffectBase::All, |(_, on)| *on)
+    let shown = Shown::Volume(name.into_owned());
+    Ok((shot.develop(outcome, vec![reading], shown), file.warnings))
 }
 
 /// The camera of a request over a box: its middle and its width, unless the request says.
@@ -81,7 +66,7 @@ pub fn scene_files(
     frame: &Frame,
     request: &StillRequest,
 ) -> Result<Vec<Attachment>, StillError> {
-    let (_, settings, _) = settings(request)?;
+    let settings = request.plan(Subject::Voxels)?.render;
     let scene = mitsuba::Scene {
         camera: &camera_over(frame.bounds(), request)?,
         lights: &lights(&request.light, request.view, request.turned)?,

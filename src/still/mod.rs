@@ -6,8 +6,8 @@
 //! colourways of a design side by side, the cloth made once wherever their yarns allow;
 //! [`render_grid`] takes a picture of a volume that was read.
 
+mod again;
 mod carried;
-mod effects;
 mod engine;
 mod finishing;
 mod first_sight;
@@ -21,17 +21,14 @@ mod sheet;
 mod standing;
 
 pub use carried::{Carried, Sighted};
-pub use effects::{DIALS, DialError, EFFECTS};
 pub use engine::Engine;
 pub use first_sight::{FirstSight, SightTables};
 pub use grid::{light_warnings, render_grid, scene_files};
 pub use part::check_view;
 pub use picture::{Pass, Still, place_on, render, render_still, usual_width_mm};
 pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};
-pub use request::{
-    EffectBase, EffectChoice, Heading, LightChoice, StillReport, StillRequest, Stop,
-};
-pub use sheet::{AS_DESIGNED, Sheet, SheetPlace, render_sheet};
+pub use request::{Heading, LightChoice, StillReport, StillRequest, Stop, USUAL_SPP};
+pub use sheet::{ALL_COLOURWAYS, AS_DESIGNED, Sheet, SheetPlace, render_sheet};
 pub use standing::Standing;
 
 use std::path::{Path, PathBuf};
@@ -44,12 +41,11 @@ use crate::formats::png::PngError;
 use crate::formats::volume::VolumeFileError;
 use crate::formats::volume::mitsuba::SceneError;
 use crate::job::Cancelled;
+use crate::limits;
 use crate::memory::TooMuch;
+use crate::plan::DialError;
 use crate::scene::LightError;
 use crate::synthesis::SynthesisError;
-
-/// Most pixels of a picture each way.
-pub const LARGEST_SIDE: u32 = 16_384;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -66,17 +62,17 @@ pub enum StillError {
     /// The environment could not be read.
     #[error(transparent)]
     Environment(#[from] ExrError),
-    /// A dial or effect that does not exist or does not take this value.
+    /// A dial that does not take this value.
     #[error(transparent)]
     Dial(#[from] DialError),
     /// A size of picture that cannot be made.
-    #[error("a picture of {0} × {1} pixels cannot be made; give 1 to {LARGEST_SIDE} each way")]
+    #[error("a picture of {0} × {1} pixels cannot be made; give {range} each way", range = limits::whole(&limits::PICTURE_SIDE))]
     Size(u32, u32),
     /// A picture that takes more memory than may be used.
     #[error(transparent)]
     Memory(#[from] TooMuch),
     /// A width of cloth that is not a length.
-    #[error("a picture {0} mm wide cannot be made; give a width between 0.01 and 100000 mm")]
+    #[error("a picture {0} mm wide cannot be made; give {range} mm", range = limits::in_words(&limits::PICTURE_MM))]
     Width(f32),
     /// A colourway that the design does not have.
     #[error(transparent)]

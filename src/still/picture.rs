@@ -6,23 +6,24 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::again::Again;
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{LightChoice, StillReport, StillRequest};
-use super::{LARGEST_SIDE, StillError, effects, finishing};
-use crate::cloth::{ClothSettings, REACH_MM};
+use super::{StillError, finishing};
+use crate::cloth::REACH_MM;
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::film::{Denoise, Film, Pixel, Tone};
 use crate::formats::{exr, png};
 use crate::job::Job;
+use crate::limits;
 use crate::memory;
-use crate::render::{self, Both, RenderOutcome, RenderSettings, Scatterer};
+use crate::plan::{Effect, Plan, ShowingDials, Subject};
+use crate::render::{self, Both, RenderOutcome, Scatterer};
 use crate::scene::{Bounds, Camera, LightRig, View};
 
 /// Degrees across the picture where the eye has a direction of its own.
 const FIELD_OF_VIEW: f32 = 30.0;
-/// Samples a pixel when a request gives no way to stop.
-const USUAL_SPP: u32 = 64;
 
 /// Width of cloth a view shows when none is asked for, mm.
 pub fn usual_width_mm(view: View, design: &Design) -> f32 {
@@ -92,33 +93,6 @@ impl<'p> Pass<'p> {
             _ => None,
         }
     }
-}
-
-/// Effects by name, and whether they are simulated.
-pub(super) type SwitchedEffects = Vec<(String, bool)>;
-
-/// The settings that a request makes of the defaults.
-pub(super) fn settings(
-    request: &StillRequest,
-) -> Result<(ClothSettings, RenderSettings, SwitchedEffects), StillError> {
-    let mut cloth = ClothSettings::default();
-    let mut render = RenderSettings {
-        seed: request.seed,
-        backing: request.backing,
-        spp: request
-            .stop
-            .spp
-            .unwrap_or(match (request.stop.seconds, request.stop.error) {
-                (None, None) => USUAL_SPP,
-                _ => u32::MAX,
-            }),
-        error: request.stop.error.unwrap_or(0.0) as f32,
-        ..RenderSettings::default()
-    };
-    cloth.synthesis.seed = request.seed;
-    effects::turn(&request.dials, &mut cloth, &mut render)?;
-    let on = effects::choose(&request.effects, &mut cloth, &mut render)?;
-    Ok((cloth, render, on))
 }
 
 /// The light on a cloth that is seen in a view and, where `turned`, turned by 180°: it stays
@@ -195,12 +169,11 @@ pub(super) fn camera_at(
     usual: f32,
 ) -> Result<Camera, StillError> {
     let (width, height) = (request.width, request.height);
-    let sides = 1..=LARGEST_SIDE;
-    if !sides.contains(&width) || !sides.contains(&height) {
+    if !limits::PICTURE_SIDE.contains(&width) || !limits::PICTURE_SIDE.contains(&height) {
         return Err(StillError::Size(width, height));
     }
     let width_mm = request.width_mm.unwrap_or(usual);
-    if !(0.01..=100_000.0).contains(&width_mm) {
+    if !limits::PICTURE_MM.contains(&width_mm) {
         return Err(StillError::Width(width_mm));
     }
     let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
@@ -269,16 +242,19 @@ pub(super) fn render_lit(
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<Still, StillError> {
-    let (_, settings, _) = settings(request)?;
+    let plan = request.plan(Subject::Cloth)?;
     let shot = Shot {
         camera: camera(&prepared.design, request)?,
         lights,
-        settings,
+        plan,
         request,
     };
     let (x, y) = in_view(&shot.camera, request);
     let cloth = prepared.cloth().clone().with_window(x, y);
-    let hairs = prepared.hair_layer(&cloth);
+    let hairs = match shot.plan.on(Effect::Hairs) {
+        true => prepared.hair_layer(&cloth),
+        false => None,
+    };
     let outcome = match &hairs {
         Some(hairs) => shot.expose(&Both(&cloth, hairs), job, on_pass)?,
         None => shot.expose(&cloth, job, on_pass)?,
@@ -286,11 +262,10 @@ pub(super) fn render_lit(
     let mut still = shot.develop(
         outcome,
         prepared.seconds.clone(),
-        prepared.effects.clone(),
-        Subject::Design(Arc::clone(&prepared.design)),
+        Shown::Design(Arc::clone(&prepared.design)),
     );
     still.report.level = cloth.level();
-    still.report.warnings.extend(prepared.check_level().err());
+    (still.report.warnings).extend(prepared.check(&shot.plan.cloth));
     still.report.light_error = cloth.light_error();
     (still.report.warnings).extend(end_in_view(&shot.camera, &cloth.bounds(), request));
     Ok(still)
@@ -300,7 +275,7 @@ pub(super) fn render_lit(
 pub(super) struct Shot<'r> {
     pub camera: Camera,
     pub lights: LightRig,
-    pub settings: RenderSettings,
+    pub plan: Plan,
     pub request: &'r StillRequest,
 }
 
@@ -315,13 +290,13 @@ impl Shot<'_> {
         let Self {
             camera,
             lights,
-            settings,
+            plan,
             request,
         } = self;
         ask_for_picture(request.width, request.height)?;
         let tone = self.tone();
         let job = request.stop.bounds(job);
-        let denoise = effects::denoises(&request.dials);
+        let denoise = plan.showing.denoise;
         let mut show = |film: &Film, progress: &render::Progress| {
             on_pass(&Pass {
                 width: film.width(),
@@ -332,7 +307,7 @@ impl Shot<'_> {
                 content: Content::Traced(film, tone, denoise),
             });
         };
-        let outcome = render::render(scatterer, camera, lights, settings, &job, &mut show)?;
+        let outcome = render::render(scatterer, camera, lights, &plan.render, &job, &mut show)?;
         Ok(outcome)
     }
 
@@ -347,8 +322,7 @@ impl Shot<'_> {
         &self,
         outcome: RenderOutcome,
         mut seconds: Vec<(String, f64)>,
-        effects: SwitchedEffects,
-        subject: Subject,
+        shown: Shown,
     ) -> Still {
         let request = self.request;
         seconds.push(("render".to_owned(), outcome.seconds));
@@ -367,7 +341,7 @@ impl Shot<'_> {
             majorant_violations: outcome.counters.majorant_violations,
             capped_walks: outcome.counters.capped_walks,
             invalid_rays: outcome.counters.invalid_rays,
-            effects,
+            effects: self.plan.effects.clone(),
             level: 0,
             light_error: Some(0.0),
             warnings: (self.lights.warnings.iter().cloned())
@@ -375,14 +349,13 @@ impl Shot<'_> {
                 .collect(),
         };
         Still {
+            again: Again::new(request, &report),
             report,
             film: outcome.film,
             tone: self.tone(),
-            denoise: effects::denoises(&request.dials),
-            depth: effects::png_depth(&request.dials),
+            showing: self.plan.showing,
             pixels_per_mm: self.camera.pixels_per_mm(),
-            subject,
-            settings: format!("{request:?}"),
+            shown,
         }
     }
 }
@@ -474,15 +447,14 @@ pub struct Still {
     /// Linear means, variances and features.
     pub film: Film,
     tone: Tone,
-    denoise: bool,
-    depth: png::Depth,
+    pub(super) showing: ShowingDials,
     pub(super) pixels_per_mm: f32,
-    subject: Subject,
-    settings: String,
+    shown: Shown,
+    again: Again,
 }
 
 /// What a still shows.
-pub(super) enum Subject {
+pub(super) enum Shown {
     /// A design's cloth.
     Design(Arc<Design>),
     /// A volume that was read, by its name.
@@ -490,12 +462,22 @@ pub(super) enum Subject {
 }
 
 impl Still {
+    /// The same, of what a command line calls `source`: a file or the name of a preset, with
+    /// the options for reading it.
+    pub fn made_from(mut self, source: String) -> Self {
+        self.again.source = Some(source);
+        self
+    }
+
+    /// The command line that makes the picture again.
+    pub fn command_line(&self) -> String {
+        self.again.line()
+    }
+
     /// The film's radiances denoised; `None` where the request said not to, or the job is
     /// cancelled.
     pub fn clean(&self, job: &Job) -> Option<Vec<Vec3>> {
-        let clean = self
-            .denoise
-            .then(|| Denoise::default().apply(&self.film, job));
+        let clean = (self.showing.denoise).then(|| Denoise::default().apply(&self.film, job));
         clean?.ok()
     }
 
@@ -511,9 +493,9 @@ impl Still {
     /// What the picture's file says of it.
     pub(super) fn texts(&self) -> Vec<(String, String)> {
         // The hash is of the whole document: it is worked out for pictures that are kept.
-        let (title, hash) = match &self.subject {
-            Subject::Design(design) => (design.name.clone(), design_hash(design)),
-            Subject::Volume(name) => (name.clone(), "a volume".to_owned()),
+        let (title, hash) = match &self.shown {
+            Shown::Design(design) => (design.name.clone(), design_hash(design)),
+            Shown::Volume(name) => (name.clone(), "a volume".to_owned()),
         };
         [
             (
@@ -522,7 +504,7 @@ impl Still {
             ),
             ("Title", title),
             ("Design", hash),
-            ("Settings", self.settings.clone()),
+            ("Settings", self.command_line()),
             ("invalid_samples", self.report.invalid_samples.to_string()),
             (
                 "majorant_violations",
@@ -546,7 +528,7 @@ impl Still {
                     pixels_per_mm: Some(self.pixels_per_mm),
                     texts: self.texts(),
                 };
-                png::write(path, &self.picture(), self.depth, &metadata)?;
+                png::write(path, &self.picture(), self.showing.png_depth, &metadata)?;
             }
             Some(ending) if ending.eq_ignore_ascii_case("exr") => {
                 exr::write(path, &self.film, self.pixels_per_mm, &self.texts())?;

@@ -7,7 +7,6 @@ use glam::Vec3;
 
 use super::StillError;
 use super::part::{roomy, stretch};
-use super::picture::{SwitchedEffects, settings};
 use super::request::StillRequest;
 use crate::cloth::{ClothError, ClothSettings, ClothVolume, HairLayer, YarnClasses, colour};
 use crate::design::{Design, WeavePattern};
@@ -15,6 +14,7 @@ use crate::exemplar::hairs::HairPatch;
 use crate::exemplar::{ExemplarError, ExemplarSet, ExemplarStore, Pair, VoxelGrid, bytes_at_most};
 use crate::job::Job;
 use crate::memory;
+use crate::plan::Subject;
 use crate::synthesis::{Catalogue, Stretch};
 
 /// A cloth that can be looked at: exemplars built, blocks assigned, colours found.
@@ -24,7 +24,6 @@ pub struct PreparedCloth {
     cloth: ClothVolume,
     catalogue: Arc<Catalogue>,
     pub(super) seconds: Vec<(String, f64)>,
-    pub(super) effects: SwitchedEffects,
     settings: ClothSettings,
     /// The part of a very large design that it has; `None` = all of it.
     within: Option<Stretch>,
@@ -74,19 +73,8 @@ fn stages(exemplars: f64, synthesis: f64) -> Vec<(String, f64)> {
 }
 
 impl PreparedCloth {
-    /// Whether an effect is simulated.
-    fn on(&self, name: &str) -> bool {
-        self.effects
-            .iter()
-            .any(|(effect, on)| effect == name && *on)
-    }
-
-    /// The hairs over `cloth`, this cloth made ready for a view; `None` where there are
-    /// none or they are switched off.
+    /// The hairs over `cloth`, this cloth made ready for a view; `None` where there are none.
     pub(super) fn hair_layer<'c>(&self, cloth: &'c ClothVolume) -> Option<HairLayer<'c>> {
-        if !self.on("hairs") {
-            return None;
-        }
         let patch = self.hairs.get_or_init(|| HairLayer::patch(cloth)).clone()?;
         let hairy = HairLayer::hairy(self.design.yarns());
         Some(HairLayer::of(cloth, patch, hairy))
@@ -110,6 +98,15 @@ impl PreparedCloth {
             "level {asked} of these yarns and this sett is no coarser than level {level}: choose \
              level {level}"
         ))
+    }
+
+    /// Remarks on a picture with the settings `asked` for, where the cloth has others.
+    pub(super) fn check(&self, asked: &ClothSettings) -> Vec<String> {
+        let same = (asked.synthesis, asked.tap) == (self.settings.synthesis, self.settings.tap);
+        let other = "the cloth was made with other dials of synthesis than its picture asks for: \
+                     prepare it anew";
+        let other = (!same).then(|| other.to_owned());
+        self.check_level().err().into_iter().chain(other).collect()
     }
 
     /// The design whose cloth it is.
@@ -150,7 +147,7 @@ impl PreparedCloth {
         request: &StillRequest,
         job: &Job,
     ) -> Result<Option<Followed>, StillError> {
-        let (settings, _, effects) = settings(request)?;
+        let settings = request.plan(Subject::Cloth)?.cloth;
         if settings != self.settings {
             return Ok(None);
         }
@@ -176,7 +173,6 @@ impl PreparedCloth {
             cloth,
             catalogue: Arc::clone(&self.catalogue),
             seconds: stages(0.0, begun.elapsed().as_secs_f64()),
-            effects,
             settings,
             within,
             hairs,
@@ -263,7 +259,7 @@ pub fn prepare_woven(
     store: &ExemplarStore,
     job: &Job,
 ) -> Result<PreparedCloth, StillError> {
-    let (settings, _, effects) = settings(request)?;
+    let settings = request.plan(Subject::Cloth)?.cloth;
     let design = &coloured(design, request)?;
     let begun = Instant::now();
     let catalogue = Arc::new(Catalogue::standard());
@@ -301,7 +297,6 @@ pub fn prepare_woven(
         cloth,
         catalogue,
         seconds: stages(exemplars, assigning + begun.elapsed().as_secs_f64()),
-        effects,
         settings,
         within,
         hairs: OnceLock::new(),

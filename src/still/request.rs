@@ -1,11 +1,16 @@
 //! What picture is asked for, and how it came about.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::job::Job;
+use crate::plan::{DialError, EffectChoice, Plan, Planned, Settings, Subject};
 use crate::render::Backing;
 use crate::scene::{PRESET_NAMES, View};
+
+/// Samples a pixel when a request gives no way to stop.
+pub const USUAL_SPP: u32 = 64;
 
 /// What lights the cloth.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,31 +56,16 @@ impl Heading {
     }
 }
 
+impl fmt::Display for Heading {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{},{}", self.azimuth, self.elevation)
+    }
+}
+
 impl Default for LightChoice {
     fn default() -> Self {
         Self::Preset(PRESET_NAMES[0].to_owned())
     }
-}
-
-/// Which effects to start from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum EffectBase {
-    /// What the scene calls for.
-    #[default]
-    Auto,
-    /// All of them.
-    All,
-    /// None of them.
-    None,
-}
-
-/// Which effects are simulated.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct EffectChoice {
-    /// Where to start.
-    pub base: EffectBase,
-    /// Effects by name, switched on or off.
-    pub changes: Vec<(String, bool)>,
 }
 
 /// When to stop refining: at the first that is reached.
@@ -131,8 +121,8 @@ pub struct StillRequest {
     pub backing: Backing,
     /// Which effects are simulated.
     pub effects: EffectChoice,
-    /// Dials by name, with the value as text; see [`super::DIALS`].
-    pub dials: Vec<(String, String)>,
+    /// What the dials are set to.
+    pub settings: Settings,
     /// Seed of every random choice.
     pub seed: u64,
     /// When to stop.
@@ -155,11 +145,29 @@ impl Default for StillRequest {
             exposure_ev: 0.0,
             backing: Backing::None,
             effects: EffectChoice::default(),
-            dials: Vec::new(),
+            settings: Settings::default(),
             seed: 0,
             stop: Stop::default(),
             colourway: None,
         }
+    }
+}
+
+impl StillRequest {
+    /// What each system takes for this picture of `subject`.
+    ///
+    /// # Errors
+    /// When a setting lies outside of what its dial takes.
+    pub fn plan(&self, subject: Subject) -> Result<Plan, DialError> {
+        let plan = Plan::new(&self.settings, &self.effects, subject)?;
+        let mut plan = plan.seeded(self.seed).before(self.backing);
+        plan.render.spp = match (self.stop.spp, self.stop.seconds, self.stop.error) {
+            (Some(spp), ..) => spp,
+            (None, None, None) => USUAL_SPP,
+            _ => u32::MAX,
+        };
+        plan.render.error = self.stop.error.unwrap_or(0.0) as f32;
+        Ok(plan)
     }
 }
 
@@ -192,8 +200,8 @@ pub struct StillReport {
     pub capped_walks: u64,
     /// Rays that were not walked because they had no place or direction.
     pub invalid_rays: u64,
-    /// Effects by name, and whether they were simulated.
-    pub effects: Vec<(String, bool)>,
+    /// Of each effect, whether it was simulated and who decided.
+    pub effects: Vec<Planned>,
     /// The cloth's level; 0 of what is no cloth.
     pub level: u32,
     /// See [`crate::cloth::ClothVolume::light_error`].

@@ -7,16 +7,20 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::again::Again;
 use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, lights, render_lit};
 use super::prepare::{PreparedCloth, prepare};
 use super::request::{StillReport, StillRequest};
-use super::{LARGEST_SIDE, StillError, finishing, png_ending};
+use super::{StillError, finishing, png_ending};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::formats::png;
 use crate::job::Job;
+use crate::limits;
 use crate::memory;
 
+/// The name that asks for a sheet of every colourway; no colourway is called that.
+pub const ALL_COLOURWAYS: &str = "all";
 /// What the design's own yarns are called on a sheet.
 pub const AS_DESIGNED: &str = "as designed";
 
@@ -45,6 +49,8 @@ pub struct Sheet {
     /// Width and height of each picture in pixels.
     pub each: (u32, u32),
     picture: crate::film::Picture,
+    depth: png::Depth,
+    again: Again,
     metadata: png::Metadata,
 }
 
@@ -52,6 +58,12 @@ impl Sheet {
     /// The sheet as shown, sRGB with straight alpha; clear between the pictures.
     pub fn picture(&self) -> &crate::film::Picture {
         &self.picture
+    }
+
+    /// The same, of what a command line calls `source`.
+    pub fn made_from(mut self, source: String) -> Self {
+        self.again.source = Some(source);
+        self
     }
 
     /// Names and places, as the file's metadata says them: `name at x,y; …`.
@@ -65,7 +77,13 @@ impl Sheet {
     /// When the ending is another or the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), StillError> {
         png_ending(path)?;
-        png::write(path, &self.picture, png::Depth::Eight, &self.metadata)?;
+        let mut metadata = self.metadata.clone();
+        for (key, text) in &mut metadata.texts {
+            if key == "Settings" {
+                *text = self.again.line();
+            }
+        }
+        png::write(path, &self.picture, self.depth, &metadata)?;
         Ok(())
     }
 }
@@ -99,7 +117,7 @@ impl Layout {
         let (all_width, all_height) = (length(width, columns as u64), length(height, rows));
         let clipped = |length: u64| u32::try_from(length).unwrap_or(u32::MAX);
         let size = (clipped(all_width), clipped(all_height));
-        if size.0 > LARGEST_SIDE || size.1 > LARGEST_SIDE {
+        if !limits::PICTURE_SIDE.contains(&size.0) || !limits::PICTURE_SIDE.contains(&size.1) {
             return Err(StillError::Size(size.0, size.1));
         }
         Ok(Self { columns, gap, size })
@@ -126,8 +144,8 @@ pub fn render_sheet(
     on_pass: &mut dyn FnMut(usize, usize, &Pass<'_>),
 ) -> Result<Sheet, StillError> {
     if design.colourways().is_empty() {
-        // No colourway is called "all", so this says what the design has.
-        Design::clone(design).with_colourway("all")?;
+        // This says what the design has.
+        Design::clone(design).with_colourway(ALL_COLOURWAYS)?;
     }
     let (width, height) = (request.width, request.height);
     let mut designs = vec![(AS_DESIGNED.to_owned(), Arc::clone(design))];
@@ -181,6 +199,11 @@ pub fn render_sheet(
         });
         cloth = Some(ready);
     }
+    let all = StillRequest {
+        colourway: Some(ALL_COLOURWAYS.to_owned()),
+        ..request.clone()
+    };
+    let again = Again::new(&all, &report);
     (report.width, report.height) = layout.size;
     metadata
         .texts
@@ -190,6 +213,8 @@ pub fn render_sheet(
         places,
         each: (width, height),
         picture,
+        again,
+        depth: request.settings.showing.png_depth,
         metadata,
     })
 }

@@ -20,6 +20,7 @@ use std::time::Instant;
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
 use pickglass::film::{Film, Pixel};
 use pickglass::job::Job;
+use pickglass::plan::Settings;
 use pickglass::still::{self, LightChoice, StillRequest, Stop};
 use pickglass::{atomic, presets};
 
@@ -71,15 +72,13 @@ struct Measured {
 /// Makes a design at a level and looks at it under each light.
 fn measured(name: &str, level: u32, corrected: bool, lights: &[&str], spp: u32) -> Measured {
     let design = Arc::new(presets::design(name).expect("there").expect("sound"));
-    let switch = if corrected { "on" } else { "off" };
+    let mut settings = Settings::default().at_level(level);
+    settings.cloth.correct_levels = corrected;
     let request = StillRequest {
         width: 64,
         height: 64,
         width_mm: Some(6.0),
-        dials: vec![
-            ("level".to_owned(), level.to_string()),
-            ("level-correction".to_owned(), switch.to_owned()),
-        ],
+        settings,
         stop: Stop {
             spp: Some(spp),
             ..Stop::default()

@@ -47,7 +47,7 @@ fn make(view: &PreviewView, error: f64, store: &ExemplarStore) {
     let wider = (CROP[0] + WIDER) as f32 / SIZE[0] as f32;
     [request.width, request.height] = [CROP[0] + WIDER, CROP[1]];
     request.width_mm = request.width_mm.map(|mm| mm * wider);
-    request.dials.push(("denoise".to_owned(), "off".to_owned()));
+    request.settings.showing.denoise = false;
     request.stop = Stop {
         // Squares of sixteen pixels are four times better than these.
         error: Some(error * SQUARE as f64),

@@ -7,24 +7,20 @@ use std::sync::Arc;
 use pickglass::design::Sett;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
+use pickglass::plan::{Settings, dial};
 use pickglass::presets;
 use pickglass::still::{self, StillRequest, Stop};
 
 /// Mean radiance and coverage of a design.
 fn shown(name: &str, level: u32, corrected: bool) -> [f64; 2] {
     let design = Arc::new(presets::design(name).unwrap().unwrap());
-    let dial = |name: &str, value: String| (name.to_owned(), value);
+    let mut settings = Settings::default().at_level(level);
+    settings.cloth.correct_levels = corrected;
     let request = StillRequest {
         width: 56,
         height: 56,
         width_mm: Some(6.0),
-        dials: vec![
-            dial("level", level.to_string()),
-            dial(
-                "level-correction",
-                if corrected { "on" } else { "off" }.to_owned(),
-            ),
-        ],
+        settings,
         stop: Stop {
             spp: Some(24),
             ..Stop::default()
@@ -69,14 +65,15 @@ fn a_coarse_cloth_says_how_far_its_light_is_off() {
     let of = |sett: Sett, dials: &[(&str, &str)]| {
         let design = presets::design("linen-plain").unwrap().unwrap();
         let design = design.with_sett(sett).unwrap();
-        let dials = (dials.iter())
-            .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))
-            .collect();
+        let mut settings = Settings::default();
+        for (name, value) in dials {
+            dial(name).unwrap().turn(&mut settings, value).unwrap();
+        }
         let request = StillRequest {
             width: 8,
             height: 8,
             width_mm: Some(2.0),
-            dials,
+            settings,
             stop: Stop {
                 spp: Some(1),
                 ..Stop::default()

@@ -14,9 +14,8 @@ use pickglass::design::{
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::still::{
-    EffectBase, EffectChoice, Followed, StillRequest, Stop, prepare_woven, render,
-};
+use pickglass::plan::{EffectBase, EffectChoice, Settings};
+use pickglass::still::{Followed, StillRequest, Stop, prepare_woven, render};
 use pickglass::synthesis::{Catalogue, Method, Stretch, SynthesisError, assign, assign_part};
 
 const ENDS: u32 = 16_000;
@@ -46,7 +45,7 @@ fn look(x: f32, y: f32) -> StillRequest {
             base: EffectBase::None,
             changes: Vec::new(),
         },
-        dials: vec![("level".to_owned(), "4".to_owned())],
+        settings: Settings::default().at_level(4),
         stop: Stop {
             spp: Some(1),
             ..Stop::default()

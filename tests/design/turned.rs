@@ -12,11 +12,11 @@ use pickglass::design::{
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
+use pickglass::plan::{EffectBase, EffectChoice, Settings};
 use pickglass::print::{self, PdfOptions};
 use pickglass::scene::{LightRig, Sky, View};
 use pickglass::still::{
-    EffectBase, EffectChoice, FirstSight, Heading, LightChoice, SightTables, Still, StillRequest,
-    Stop, prepare, render,
+    FirstSight, Heading, LightChoice, SightTables, Still, StillRequest, Stop, prepare, render,
 };
 
 const SIDE: u32 = 64;
@@ -40,6 +40,8 @@ fn twill(notation: &str) -> Arc<Design> {
 /// 8 × 8 crossings, with a sun that stands low, so that it matters where.
 fn request(design: &Design, turned: bool, azimuth: i16) -> StillRequest {
     let pitch = design.sett().ends.mean_pitch_mm();
+    let mut settings = Settings::default().at_level(3);
+    settings.showing.denoise = false;
     StillRequest {
         width: SIDE,
         height: SIDE,
@@ -55,9 +57,7 @@ fn request(design: &Design, turned: bool, azimuth: i16) -> StillRequest {
             base: EffectBase::None,
             changes: Vec::new(),
         },
-        dials: [("level", "3"), ("denoise", "off")]
-            .map(|(dial, value)| (dial.to_owned(), value.to_owned()))
-            .to_vec(),
+        settings,
         stop: Stop {
             spp: Some(16),
             ..Stop::default()
@@ -91,7 +91,7 @@ fn differing(one: &[u8], other: &[u8]) -> f64 {
 fn a_turned_camera_looks_along_the_same_rays() {
     let target = Vec3::new(3.0, -2.0, 0.1);
     let round = Vec3::new(-1.0, -1.0, 1.0);
-    for view in View::ALL {
+    for &view in View::ALL {
         let plain = view.camera(target, 8.0, 64, 48);
         let turned = plain.turned();
         for (x, y) in [(0.5, 0.5), (31.0, 7.0), (60.5, 47.5)] {

@@ -68,17 +68,17 @@ struct Shown {
 fn shown(design: &Design) -> Shown {
     let size = [design.end_positions(), design.pick_positions()].map(|p| p.repeat_mm() as f32);
     let height = (WIDTH as f32 * size[1] / size[0]).round() as u32;
-    let request = StillRequest {
+    let mut request = StillRequest {
         width: WIDTH,
         height,
         width_mm: Some(size[0]),
-        dials: vec![("denoise".to_owned(), "off".to_owned())],
         stop: Stop {
             spp: Some(SPP),
             ..Stop::default()
         },
         ..StillRequest::default()
     };
+    request.settings.showing.denoise = false;
     let job = Job::new();
     let design = Arc::new(design.clone());
     let cloth = still::prepare(&design, &request, &ExemplarStore::user(), &job).unwrap();

@@ -9,6 +9,7 @@ use pickglass::design::{
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
+use pickglass::plan::Settings;
 use pickglass::presets;
 use pickglass::render::Backing;
 use pickglass::scene::View;
@@ -24,7 +25,7 @@ fn request(view: View, light: &str) -> StillRequest {
         height: 240,
         view,
         light: LightChoice::Preset(light.to_owned()),
-        dials: vec![("level".to_owned(), "1".to_owned())],
+        settings: Settings::default().at_level(1),
         stop: Stop {
             spp: Some(12),
             ..Stop::default()
@@ -229,7 +230,7 @@ fn an_edit_changes_only_what_is_beside_it() {
 #[test]
 fn every_view_and_wild_places_give_a_picture() {
     let design = design("twill-satin");
-    for view in View::ALL {
+    for &view in View::ALL {
         let sight = first(&design);
         for width_mm in [0.011, 3.0, 9_000.0] {
             for centre in [[0.0, 0.0], [-1e6, 1e6], [f32::NAN, 0.0]] {

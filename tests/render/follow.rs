@@ -9,6 +9,7 @@ use pickglass::design::{
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
+use pickglass::plan::Settings;
 use pickglass::random::Random;
 use pickglass::render::Voxel;
 use pickglass::still::{Followed, PreparedCloth, StillRequest, prepare};
@@ -38,7 +39,7 @@ fn plain_maps() -> YarnMaps {
 
 fn request() -> StillRequest {
     StillRequest {
-        dials: vec![("level".to_owned(), "3".to_owned())],
+        settings: Settings::default().at_level(3),
         ..StillRequest::default()
     }
 }
@@ -144,7 +145,7 @@ fn other_exemplars_mean_making_anew() {
     let same = design(twill(), yarns(), plain_maps());
     let drawdown = Arc::new(same.weave());
     let finer = StillRequest {
-        dials: vec![("level".to_owned(), "2".to_owned())],
+        settings: Settings::default().at_level(2),
         ..StillRequest::default()
     };
     assert!(

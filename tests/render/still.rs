@@ -23,7 +23,7 @@ fn every_view_and_light_gives_a_sound_picture() {
     let grid = scene.grid(Taps::Nearest);
     let bounds = scene.bounds();
     let target = (bounds.min + bounds.max) * 0.5;
-    for (k, view) in View::ALL.into_iter().enumerate() {
+    for (k, view) in View::ALL.iter().enumerate() {
         let camera = view.camera(target, bounds.max.x * 0.8, 96, 72);
         let preset = PRESET_NAMES[k % PRESET_NAMES.len()];
         let mut lights = LightRig::preset(preset).expect("a preset");

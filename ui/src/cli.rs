@@ -8,11 +8,14 @@ use pickglass::exemplar::COARSEST_LEVEL;
 use pickglass::render::Backing;
 use pickglass::scene::{PRESET_NAMES, View};
 
-use crate::values::{self, Dial, PicturePath, SettArg, Size, VolumePath};
+use crate::values::{self, PicturePath, SettArg, Size, Turned, VolumePath};
 use crate::window::Restarts;
 use pickglass::cloth::Region;
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
-use pickglass::still::{EffectChoice, LightChoice};
+use pickglass::plan::EffectChoice;
+use pickglass::still::{Heading, LightChoice, USUAL_SPP};
+use pickglass::synthesis::Method;
+use pickglass::text::shell_word;
 
 /// Look closely at cloth that has not been woven yet.
 #[derive(Debug, Parser)]
@@ -92,22 +95,22 @@ pub struct SettArgs {
 #[command(next_help_heading = "Images and loom files")]
 pub struct ImageArgs {
     /// What an image is [default: as its colours suggest]
-    #[arg(long = "as", value_name = "KIND", value_parser = values::image_as())]
+    #[arg(long = "as", value_name = "KIND", value_parser = values::named::<ImageAs>())]
     pub what: Option<ImageAs>,
     /// Presets by maker: tc2, pointcarre and arahweave
-    #[arg(long, value_name = "MAKER", value_parser = values::convention())]
+    #[arg(long, value_name = "MAKER", value_parser = values::named::<Convention>())]
     pub convention: Option<Convention>,
     /// Which thread a black pixel puts on the face [default: warp]
-    #[arg(long, value_name = "THREAD", value_parser = values::black())]
+    #[arg(long, value_name = "THREAD", value_parser = values::named::<Black>())]
     pub black: Option<Black>,
     /// The corner in which end 1 and pick 1 meet [default: bottom-left]
-    #[arg(long, value_name = "CORNER", value_parser = values::corner())]
+    #[arg(long, value_name = "CORNER", value_parser = values::named::<Corner>())]
     pub origin: Option<Corner>,
     /// Exchange left and right: Z becomes S
     #[arg(long)]
     pub mirror: bool,
     /// Tell regions and yarns apart by colour or by palette index [default: rgb]
-    #[arg(long, value_name = "KEY", value_parser = values::key())]
+    #[arg(long, value_name = "KEY", value_parser = values::named::<Key>())]
     pub key: Option<Key>,
     /// An image with the warp yarn of every crossing
     #[arg(long, value_name = "IMAGE")]
@@ -118,6 +121,41 @@ pub struct ImageArgs {
     /// Loom files read or written are of cloth woven face down
     #[arg(long)]
     pub face_down: bool,
+}
+
+impl SettArgs {
+    /// The words that say the same.
+    pub fn words(&self) -> Vec<String> {
+        let sett = self.sett.iter();
+        sett.map(|sett| format!("--sett {}x{}", sett.ends_per_cm, sett.picks_per_cm))
+            .collect()
+    }
+}
+
+impl ImageArgs {
+    /// The words that say the same.
+    pub fn words(&self) -> Vec<String> {
+        fn word<T: Into<&'static str>>(flag: &str, value: Option<T>) -> Option<String> {
+            value.map(|value| format!("{flag} {}", value.into()))
+        }
+        let file = |flag: &str, path: &Option<PathBuf>| {
+            let path = path.as_ref()?.display().to_string();
+            Some(format!("{flag} {}", shell_word(&path)))
+        };
+        let switch = |flag: &str, on: bool| on.then(|| flag.to_owned());
+        let words = [
+            word("--as", self.what),
+            word("--convention", self.convention),
+            word("--black", self.black),
+            word("--origin", self.origin),
+            switch("--mirror", self.mirror),
+            word("--key", self.key),
+            file("--warp-map", &self.warp_map),
+            file("--weft-map", &self.weft_map),
+            switch("--face-down", self.face_down),
+        ];
+        words.into_iter().flatten().collect()
+    }
 }
 
 #[derive(Debug, Args)]
@@ -144,13 +182,13 @@ pub struct ConvertArgs {
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
     /// What an image that is written shows [default: as --as says, else the weave]
-    #[arg(long, value_name = "KIND", value_parser = values::content())]
+    #[arg(long, value_name = "KIND", value_parser = values::named::<ImageContent>())]
     pub write: Option<ImageContent>,
     /// Which thread black stands for in what is written [default: as --black says]
-    #[arg(long, value_name = "THREAD", value_parser = values::black())]
+    #[arg(long, value_name = "THREAD", value_parser = values::named::<Black>())]
     pub out_black: Option<Black>,
     /// Where what is written starts to count [default: as --origin says]
-    #[arg(long, value_name = "CORNER", value_parser = values::corner())]
+    #[arg(long, value_name = "CORNER", value_parser = values::named::<Corner>())]
     pub out_origin: Option<Corner>,
     #[command(flatten)]
     pub sett: SettArgs,
@@ -239,24 +277,13 @@ pub struct PosterizeArgs {
     pub json: bool,
 }
 
-/// How blocks are assigned to crossings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MethodArg {
-    /// The first candidate that matches
-    Naive,
-    /// The longest run of neighbours at each step
-    Greedy,
-    /// The best total along each column
-    Dp,
-}
-
 #[derive(Debug, Args)]
 pub struct SynthesizeArgs {
     /// A design (.ron), a draft, loom or image file, or a preset's name
     pub design: String,
     /// How blocks are assigned to crossings
-    #[arg(long, value_enum, default_value_t = MethodArg::Dp)]
-    pub method: MethodArg,
+    #[arg(long, default_value_t = Method::Dp, value_parser = values::named::<Method>())]
+    pub method: Method,
     /// Rank of the edge fixing; 0 leaves the edges alone
     #[arg(long, value_name = "R", default_value_t = 15)]
     pub rank: u32,
@@ -297,8 +324,7 @@ pub struct StillArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
     pub size: Size,
-    /// Paths per pixel [default: 64]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", help = format!("Paths per pixel [default: {USUAL_SPP}]"), value_parser = values::spp)]
     pub spp: Option<u32>,
     /// End after this long, with all that it takes
     #[arg(long, value_name = "S", value_parser = values::positive)]
@@ -307,22 +333,32 @@ pub struct StillArgs {
     #[arg(long, value_name = "E", value_parser = values::fraction)]
     pub error: Option<f64>,
     /// Where the eye is
-    #[arg(long, default_value = "face", value_parser = values::view())]
+    #[arg(long, default_value = "face", value_parser = values::named::<View>())]
     pub view: View,
+    /// The eye's own direction over that side, degrees from the right and above the cloth
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = values::heading)]
+    pub eye: Option<Heading>,
+    /// Turn the cloth by 180° as it lies: end 1 at the right, pick 1 at the top
+    #[arg(long)]
+    pub turned: bool,
+    /// The point of the cloth in the picture's middle, in mm [default: the design's middle]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = values::point)]
+    pub centre: Option<[f32; 2]>,
     /// Width of cloth the picture shows, in mm [default: the view's own]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
     pub mm: Option<f64>,
     /// Edge of a voxel along x, in mm, of a volume whose file does not say it or says it wrong
     #[arg(long, value_name = "MM", value_parser = values::positive)]
     pub voxel: Option<f64>,
-    /// A light's name, or an equirectangular environment (.exr)
-    #[arg(long, value_name = "PRESET|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
+    /// A light's name, the direction of a sun as 135,40, or an equirectangular environment
+    /// (.exr)
+    #[arg(long, value_name = "PRESET|DIRECTION|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
     pub light: LightChoice,
     /// Exposure in stops
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::finite)]
     pub exposure: f64,
     /// What lies behind the cloth [default: self; none behind a volume]
-    #[arg(long, value_parser = values::backing())]
+    #[arg(long, value_parser = values::named::<Backing>())]
     pub backing: Option<Backing>,
     /// What draws the picture
     #[arg(long, value_enum, default_value_t = RendererArg::Auto)]
@@ -338,7 +374,7 @@ pub struct StillArgs {
     pub seed: u64,
     /// Set one dial of one approximation, e.g. rank=15; may be repeated
     #[arg(long = "set", value_name = "dial=value", value_parser = values::dial)]
-    pub dials: Vec<Dial>,
+    pub dials: Vec<Turned>,
     #[command(flatten)]
     pub sett: SettArgs,
     #[command(flatten)]
@@ -368,7 +404,7 @@ pub struct VolumeArgs {
     #[arg(long)]
     pub face: bool,
     /// Where the eye is in the scene beside a .vol
-    #[arg(long, default_value = "face", value_parser = values::view())]
+    #[arg(long, default_value = "face", value_parser = values::named::<View>())]
     pub view: View,
     /// The light of that scene: a name, or an equirectangular environment (.exr)
     #[arg(long, value_name = "PRESET|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
@@ -399,7 +435,7 @@ mod tests {
     fn a_still_takes_every_flag() {
         let line = "pickglass still twill -o a.png --size 64x32 --seconds 2 --view back --mm 5 \
                     --light sun --exposure -1 --backing black --renderer cpu --effects none,+hairs \
-                    --seed 3 --set rank=4 --sett 24x20 --json";
+                    --seed 3 --set rank=4 --sett 24x20 --eye 90,30 --turned --centre -1,2 --json";
         let cli = Cli::try_parse_from(line.split_whitespace()).expect("a right command line");
         let Some(Command::Still(still)) = cli.command else {
             panic!("not a still")

@@ -458,7 +458,7 @@ mod tests {
 
     #[test]
     fn every_view_tool_and_pane_has_a_command() {
-        for view in View::ALL {
+        for &view in View::ALL {
             assert!(row_of(Command::Look(view)).is_some());
         }
         for tool in Tool::ALL {

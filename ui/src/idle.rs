@@ -6,24 +6,13 @@ use std::path::Path;
 use anyhow::bail;
 use pickglass::formats::image::Encoding;
 use pickglass::formats::jc5;
+use pickglass::plan::{Effect, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
+use pickglass::still::StillRequest;
 
 use crate::cli::{ConvertArgs, ImageArgs, StillArgs};
 use crate::opened::head;
-
-/// Dials of what is woven; a volume has no weave.
-const OF_CLOTH: [&str; 6] = [
-    "method",
-    "rank",
-    "patch",
-    "level",
-    "level-correction",
-    "backing-layers",
-];
-
-/// Effects of what is woven.
-const EFFECTS_OF_CLOTH: [&str; 3] = ["hairs", "edge-fixing", "randomisation"];
 
 /// Endings of images that are written.
 const IMAGES: [&str; 5] = ["png", "bmp", "tif", "tiff", "gif"];
@@ -129,18 +118,12 @@ pub fn of_volume(args: &StillArgs) -> anyhow::Result<()> {
     if args.backing == Some(Backing::Itself) {
         idle.push("--backing self".to_owned());
     }
-    let dials = args.dials.iter().map(|dial| dial.name.as_str());
-    idle.extend(
-        dials
-            .filter(|name| OF_CLOTH.contains(name))
-            .map(|name| format!("--set {name}")),
-    );
+    let dials = args.dials.iter().map(|turned| turned.dial);
+    let idle_dials = dials.filter(|dial| !dial.applies_to(Subject::Voxels));
+    idle.extend(idle_dials.map(|dial| format!("--set {}", dial.name)));
     let effects = args.effects.changes.iter().filter(|(_, on)| *on);
-    idle.extend(
-        effects
-            .filter(|(name, _)| EFFECTS_OF_CLOTH.contains(&name.as_str()))
-            .map(|(name, _)| format!("--effects +{name}")),
-    );
+    let idle_effects = effects.filter(|(effect, _)| !effect.applies_to(Subject::Voxels));
+    idle.extend(idle_effects.map(|(effect, _)| format!("--effects +{effect}")));
     match idle.first() {
         Some(flag) => bail!(
             "{flag}: {} is a volume, no design: leave it out",
@@ -148,4 +131,56 @@ pub fn of_volume(args: &StillArgs) -> anyhow::Result<()> {
         ),
         None => Ok(()),
     }
+}
+
+/// Refuses options of a still that others of it leave nothing to say, whatever it is of.
+///
+/// # Errors
+/// One line that names the first of them and why.
+pub fn in_still(args: &StillArgs, request: &StillRequest, subject: Subject) -> anyhow::Result<()> {
+    let plan = request.plan(subject)?;
+    let mut before: Vec<&str> = Vec::new();
+    for turned in &args.dials {
+        let name = turned.dial.name;
+        if before.contains(&name) {
+            bail!("--set {name}: it is set twice: leave one of them out");
+        }
+        before.push(name);
+        let off = |effect: &Effect| !plan.on(*effect);
+        if let Some(effect) = turned.dial.effect.filter(off) {
+            bail!("--set {name}: the effect {effect} is left out: leave one of the two out");
+        }
+    }
+    let mut effects: Vec<Effect> = Vec::new();
+    for (effect, _) in &args.effects.changes {
+        if effects.contains(effect) {
+            bail!("--effects: {effect} is switched twice: leave one of the two out");
+        }
+        effects.push(*effect);
+    }
+    let turned = |name: &str| before.contains(&name);
+    if turned("backing-layers") && request.backing != Backing::Itself {
+        let backing = request.backing;
+        bail!("--set backing-layers: --backing {backing} has no layers: leave one of the two out");
+    }
+    if turned("level-correction") && request.settings.cloth.level == 0 {
+        bail!(
+            "--set level-correction: level 0 needs none: add --set level=1 to 4, or leave it out"
+        );
+    }
+    let path = &args.output.0;
+    let is_exr = (path.extension()).is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    let showing = [
+        ("--set png-bits", turned("png-bits")),
+        (
+            "--set denoise=on",
+            turned("denoise") && request.settings.showing.denoise,
+        ),
+        ("--exposure", args.exposure.abs() > 0.0),
+    ];
+    let idle = showing.into_iter().find(|(_, given)| is_exr && *given);
+    if let Some((flag, _)) = idle {
+        bail!("{flag}: an .exr holds light as it was traced: leave it out, or write a .png");
+    }
+    Ok(())
 }

@@ -1,17 +1,19 @@
 //! Values of the command line: each parser says what it expected.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use pickglass::cloth::Region;
 use pickglass::formats::volume::VolumeFormat;
 use pickglass::formats::yarns;
 use pickglass::limits;
-use pickglass::render::Backing;
-use pickglass::scene::{PRESET_NAMES, View};
+use pickglass::plan::{self, Dial, Effect, EffectBase, EffectChoice, Settings};
+use pickglass::scene::PRESET_NAMES;
+use strum::VariantArray;
 
-use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
-use pickglass::still::{EffectBase, EffectChoice, LARGEST_SIDE, LightChoice};
+use pickglass::still::{Heading, LightChoice};
 
 /// Threads per cm, along both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,11 +37,17 @@ pub struct PicturePath(pub PathBuf);
 #[derive(Debug, Clone)]
 pub struct VolumePath(pub PathBuf);
 
-/// One dial of one approximation, by name.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Dial {
-    pub name: String,
+/// One dial of one approximation, and a value that it takes.
+#[derive(Clone)]
+pub struct Turned {
+    pub dial: &'static Dial,
     pub value: String,
+}
+
+impl fmt::Debug for Turned {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{}={}", self.dial.name, self.value)
+    }
 }
 
 /// `E` or `ExP`, threads per cm.
@@ -74,19 +82,30 @@ pub fn per_inch(text: &str) -> Result<f64, String> {
 
 /// `WxH` in pixels.
 pub fn size(text: &str) -> Result<Size, String> {
-    let wrong = || format!("expected WIDTHxHEIGHT in pixels, each 1 to {LARGEST_SIDE}");
+    let wrong = || {
+        let range = limits::whole(&limits::PICTURE_SIDE);
+        format!("expected WIDTHxHEIGHT in pixels, each {range}")
+    };
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
     let side = |part: &str| {
         part.trim()
             .parse::<u32>()
             .ok()
-            .filter(|n| (1..=LARGEST_SIDE).contains(n))
+            .filter(|n| limits::PICTURE_SIDE.contains(n))
             .ok_or_else(wrong)
     };
     Ok(Size {
         width: side(width)?,
         height: side(height)?,
     })
+}
+
+/// Paths a pixel.
+pub fn spp(text: &str) -> Result<u32, String> {
+    let known = text.trim().parse().ok();
+    known
+        .filter(|spp| limits::STILL_SPP.contains(spp))
+        .ok_or_else(|| format!("expected {}", limits::whole(&limits::STILL_SPP)))
 }
 
 /// A finite number.
@@ -162,103 +181,70 @@ pub fn region(text: &str) -> Result<Region, String> {
     })
 }
 
-/// A light's name, or the path of an environment image.
+/// `azimuth,elevation` in degrees.
+pub fn heading(text: &str) -> Result<Heading, String> {
+    let wrong = || {
+        "expected degrees from the right counter-clockwise and above the cloth (1 to 90), as \
+         135,40"
+            .to_owned()
+    };
+    let (azimuth, elevation) = text.split_once(',').ok_or_else(wrong)?;
+    let degrees = |part: &str| part.trim().parse::<i16>().map_err(|_| wrong());
+    let heading = Heading {
+        azimuth: degrees(azimuth)?,
+        elevation: degrees(elevation)?,
+    };
+    let known = (1..=90).contains(&heading.elevation) && (-360..=360).contains(&heading.azimuth);
+    known.then_some(heading).ok_or_else(wrong)
+}
+
+/// `x,y` in mm.
+pub fn point(text: &str) -> Result<[f32; 2], String> {
+    let wrong = || "expected a point of the cloth in mm, as 2.5,4".to_owned();
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    let mm = |part: &str| finite(part).map(|mm| mm as f32).map_err(|_| wrong());
+    Ok([mm(x)?, mm(y)?])
+}
+
+/// A light's name, a direction or the path of an environment image.
 pub fn light(text: &str) -> Result<LightChoice, String> {
     if PRESET_NAMES.contains(&text) {
         return Ok(LightChoice::Preset(text.to_owned()));
+    }
+    if let Ok(heading) = heading(text) {
+        return Ok(LightChoice::Sun(heading));
     }
     let path = PathBuf::from(text);
     match path.extension() {
         Some(ending) if ending.eq_ignore_ascii_case("exr") => Ok(LightChoice::Environment(path)),
         _ => Err(format!(
-            "expected one of {} or a file that ends in .exr",
+            "expected one of {}, a direction as 135,40, or a file that ends in .exr",
             PRESET_NAMES.join(", ")
         )),
     }
 }
 
-/// A view's name.
-pub fn view() -> impl TypedValueParser<Value = View> {
-    PossibleValuesParser::new(View::ALL.map(View::name))
-        .map(|name| View::from_name(&name).unwrap_or_default())
-}
-
-/// What lies behind the cloth.
-pub fn backing() -> impl TypedValueParser<Value = Backing> {
-    PossibleValuesParser::new(["none", "white", "black", "self"]).map(|name| match name.as_str() {
-        "white" => Backing::White,
-        "black" => Backing::Black,
-        "self" => Backing::Itself,
-        _ => Backing::None,
-    })
-}
-
-/// One of a few names, each standing for a value.
-fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
-    names: [(&'static str, T); N],
-) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names.map(|(name, _)| name)).map(move |found| {
-        let known = names.iter().find(|(name, _)| *name == found);
-        // The parser before has let only these names through.
-        known.unwrap_or(&names[0]).1
-    })
-}
-
-/// What an image is.
-pub fn image_as() -> impl TypedValueParser<Value = ImageAs> {
-    one_of([
-        ("weave", ImageAs::Weave),
-        ("artwork", ImageAs::Artwork),
-        ("warp", ImageAs::Warp),
-        ("weft", ImageAs::Weft),
-        ("picture", ImageAs::Picture),
-    ])
-}
-
-/// What an image shows.
-pub fn content() -> impl TypedValueParser<Value = ImageContent> {
-    one_of([
-        ("weave", ImageContent::Weave),
-        ("artwork", ImageContent::Artwork),
-        ("warp", ImageContent::Warp),
-        ("weft", ImageContent::Weft),
-    ])
-}
-
-/// Which thread black stands for.
-pub fn black() -> impl TypedValueParser<Value = Black> {
-    one_of([("warp", Black::Warp), ("weft", Black::Weft)])
-}
-
-/// A corner of an image.
-pub fn corner() -> impl TypedValueParser<Value = Corner> {
-    one_of([
-        ("bottom-left", Corner::BottomLeft),
-        ("bottom-right", Corner::BottomRight),
-        ("top-left", Corner::TopLeft),
-        ("top-right", Corner::TopRight),
-    ])
-}
-
-/// What tells colours apart.
-pub fn key() -> impl TypedValueParser<Value = Key> {
-    one_of([("rgb", Key::Rgb), ("index", Key::Index)])
-}
-
-/// A maker's habits.
-pub fn convention() -> impl TypedValueParser<Value = Convention> {
-    one_of(Convention::ALL.map(|convention| (convention.name(), convention)))
+/// One of the names of an enum of the library.
+pub fn named<T>() -> impl TypedValueParser<Value = T>
+where
+    T: VariantArray + FromStr + Copy + Into<&'static str> + Send + Sync + 'static,
+{
+    let names = T::VARIANTS.iter().map(|&value| value.into());
+    // The parser before has let only these names through.
+    PossibleValuesParser::new(names.collect::<Vec<&'static str>>())
+        .map(|name| name.parse().unwrap_or(T::VARIANTS[0]))
 }
 
 /// `dial=value`.
-pub fn dial(text: &str) -> Result<Dial, String> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => Ok(Dial {
-            name: name.trim().to_owned(),
-            value: value.trim().to_owned(),
-        }),
-        _ => Err("expected dial=value, as rank=15".to_owned()),
-    }
+pub fn dial(text: &str) -> Result<Turned, String> {
+    let Some((name, value)) = text.split_once('=') else {
+        return Err("expected dial=value, as rank=15".to_owned());
+    };
+    let (name, value) = (name.trim(), value.trim().to_owned());
+    let dial = plan::dial(name).map_err(|error| error.to_string())?;
+    let mut tried = Settings::default();
+    (dial.turn(&mut tried, &value)).map_err(|error| error.to_string())?;
+    Ok(Turned { dial, value })
 }
 
 /// `auto`, `all`, `none`, then `+name` and `-name`, separated by commas.
@@ -267,22 +253,13 @@ pub fn effects(text: &str) -> Result<EffectChoice, String> {
         || "expected auto, all or none, then +name or -name, separated by commas".to_owned();
     let mut choice = EffectChoice::default();
     for (place, part) in text.split(',').map(str::trim).enumerate() {
-        match part {
-            "auto" | "all" | "none" if place > 0 => return Err(wrong()),
-            "auto" => choice.base = EffectBase::Auto,
-            "all" => choice.base = EffectBase::All,
-            "none" => choice.base = EffectBase::None,
-            _ => {
-                let (on, name) = match part.split_at_checked(1) {
-                    Some(("+", name)) => (true, name),
-                    Some(("-", name)) => (false, name),
-                    _ => return Err(wrong()),
-                };
-                if name.is_empty() {
-                    return Err(wrong());
-                }
-                choice.changes.push((name.to_owned(), on));
+        match (part.parse::<EffectBase>(), part.split_at_checked(1)) {
+            (Ok(base), _) if place == 0 => choice.base = base,
+            (Err(_), Some((sign @ ("+" | "-"), name))) if !name.is_empty() => {
+                let effect = name.parse::<Effect>().map_err(|error| error.to_string())?;
+                choice.changes.push((effect, sign == "+"));
             }
+            _ => return Err(wrong()),
         }
     }
     Ok(choice)
@@ -337,15 +314,40 @@ mod tests {
     }
 
     #[test]
+    fn directions_and_points_are_two_numbers() {
+        let light = light("135,40").expect("a sun");
+        assert_eq!(light, LightChoice::Sun(heading("135, 40").expect("right")));
+        assert_eq!(point("-2.5,4"), Ok([-2.5, 4.0]));
+        for wrong in ["", "1", "1,0", "1,91", "400,5", "a,b", "nan,3"] {
+            assert!(heading(wrong).is_err(), "{wrong}");
+        }
+        assert!(point("1").is_err() && point("nan,1").is_err());
+    }
+
+    #[test]
+    fn dials_are_known_by_name_and_value() {
+        let turned = dial("rank = 4").expect("right");
+        assert_eq!(format!("{turned:?}"), "rank=4");
+        for (wrong, says) in [
+            ("rank", "expected dial=value"),
+            ("rank=none", "give 0 to 1000"),
+            ("glow=1", "the dials are"),
+        ] {
+            let error = dial(wrong).expect_err(wrong);
+            assert!(error.contains(says), "{error}");
+        }
+    }
+
+    #[test]
     fn effects_start_with_a_base() {
         let choice = effects("none,+hairs,-sky").expect("right");
         assert_eq!(choice.base, EffectBase::None);
         assert_eq!(
             choice.changes,
-            [("hairs".to_owned(), true), ("sky".to_owned(), false)]
+            [(Effect::Hairs, true), (Effect::Sky, false)]
         );
         assert_eq!(effects("-hairs").expect("right").base, EffectBase::Auto);
-        for wrong in ["", "hairs", "+", "+hairs,all"] {
+        for wrong in ["", "hairs", "+", "+hairs,all", "+glow"] {
             assert!(effects(wrong).is_err(), "{wrong}");
         }
     }

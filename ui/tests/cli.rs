@@ -418,6 +418,10 @@ fn wrong_usage_exits_2() {
         ],
         &["still", "oxford", "-o", "a.png", "--view", "above"],
         &["still", "oxford", "-o", "a.png", "--light", "candle"],
+        &["still", "oxford", "-o", "a.png", "--set", "level=9"],
+        &["still", "oxford", "-o", "a.png", "--set", "glow=1"],
+        &["still", "oxford", "-o", "a.png", "--effects", "+glow"],
+        &["still", "oxford", "-o", "a.png", "--eye", "90,0"],
         &["check", "oxford", "--sett", "zero"],
         &["check", "oxford", "--as", "painting"],
         &["check", "oxford", "--origin", "middle"],
@@ -425,6 +429,156 @@ fn wrong_usage_exits_2() {
         &["check", "oxford", "--unknown"],
     ] {
         refused(&pickglass(folder.path(), line), 2);
+    }
+}
+
+#[test]
+fn options_that_others_leave_nothing_to_say_are_refused_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let still = |file: &str, more: &[&str]| {
+        let line = ["still", "oxford", "-o", file, "--size", "8x8", "--spp", "1"];
+        pickglass(
+            folder.path(),
+            &[&line[..], &["--set", "level=4"], more].concat(),
+        )
+    };
+    let idle: [(&str, &[&str], &str); 9] = [
+        ("a.png", &["--set", "level=3"], "--set level"),
+        (
+            "a.png",
+            &["--set", "rank=3", "--effects", "-edge-fixing"],
+            "--set rank",
+        ),
+        (
+            "a.png",
+            &["--set", "order=3", "--effects", "none"],
+            "--set order",
+        ),
+        (
+            "a.png",
+            &["--set", "backing-layers=3", "--backing", "white"],
+            "--set backing-layers",
+        ),
+        ("a.png", &["--effects", "+sky,-sky"], "--effects"),
+        ("a.exr", &["--set", "png-bits=16"], "--set png-bits"),
+        ("a.exr", &["--set", "denoise=on"], "--set denoise"),
+        ("a.exr", &["--exposure", "1"], "--exposure"),
+        ("a.exr", &["--voxel", "1"], "--voxel"),
+    ];
+    for (file, more, named) in idle {
+        let line = refused(&still(file, more), 1);
+        assert!(line.contains(named), "{more:?}: {line}");
+        assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+        assert!(!folder.path().join(file).exists());
+    }
+    // Each of them has something to say elsewhere.
+    for (file, more) in [
+        ("a.png", &["--set", "rank=3"][..]),
+        ("a.png", &["--set", "backing-layers=3", "--backing", "self"]),
+        ("a.png", &["--set", "png-bits=16", "--exposure", "1"]),
+        ("a.exr", &["--set", "denoise=off"]),
+    ] {
+        assert!(still(file, more).status.success(), "{more:?}");
+    }
+}
+
+/// The text that a PNG has under a key.
+fn png_text(file: &Path, key: &str) -> String {
+    let bytes = std::fs::read(file).expect("a picture");
+    let mut rest = &bytes[8..];
+    while let Some((length, chunk)) = rest.split_first_chunk::<4>() {
+        let (data, after) = chunk[4..].split_at(u32::from_be_bytes(*length) as usize);
+        if let Some(text) = data.strip_prefix(format!("{key}\0").as_bytes()) {
+            let text = String::from_utf8_lossy(text);
+            return text.trim_start_matches('\0').to_owned();
+        }
+        rest = &after[4..];
+    }
+    panic!("{} says nothing of {key}", file.display())
+}
+
+#[test]
+fn a_picture_says_how_it_is_made_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |line: &[&str]| assert!(pickglass(folder.path(), line).status.success(), "{line:?}");
+    run(&["convert", "damask", "my cloth's.ron"]);
+    let voxels = ["volume", "oxford", "-o", "a.nrrd", "--level", "3"];
+    run(&[&voxels[..], &["--voxels-per-crossing", "6"]].concat());
+    let cloth = [
+        "still",
+        "my cloth's.ron",
+        "-o",
+        "a.png",
+        "--size",
+        "40x30",
+        "--seconds",
+        "0.1",
+        "--view",
+        "back",
+        "--eye",
+        "200,50",
+        "--centre",
+        "-1,0.5",
+        "--mm",
+        "3.3",
+        "--light",
+        "135,40",
+        "--effects",
+        "auto,-hairs",
+        "--set",
+        "level=3",
+        "--set",
+        "order=8",
+        "--exposure",
+        "0.5",
+        "--seed",
+        "5",
+        "--turned",
+        "--sett",
+        "20x18",
+        "--backing",
+        "white",
+    ];
+    let grid = [
+        "still",
+        "a.nrrd",
+        "-o",
+        "a.png",
+        "--size",
+        "24x20",
+        "--spp",
+        "3",
+        "--voxel",
+        "0.05",
+        "--effects",
+        "+tap",
+        "--light",
+        "studio",
+        "--set",
+        "png-bits=16",
+    ];
+    let plain = [
+        "still", "oxford", "-o", "a.png", "--size", "20x20", "--error", "50%",
+    ];
+    for line in [&cloth[..], &grid, &plain] {
+        run(line);
+        let said = png_text(&folder.path().join("a.png"), "Settings");
+        let again = |said: &str| {
+            let program = env!("CARGO_BIN_EXE_pickglass");
+            let said = said.replacen("pickglass", &format!("'{program}'"), 1);
+            let made = Command::new("sh")
+                .args(["-c", &said.replace("OUT.png", "b.png")])
+                .current_dir(folder.path())
+                .output()
+                .expect("a shell");
+            let error = String::from_utf8_lossy(&made.stderr);
+            assert!(made.status.success(), "{said}: {error}");
+            image::open(folder.path().join("b.png")).expect("a picture")
+        };
+        let first = image::open(folder.path().join("a.png")).expect("a picture");
+        assert!(first == again(&said), "{said}");
+        let other = said.replace(" --seed ", " --seed 7");
+        assert!(said != other && first != again(&other), "{other}");
     }
 }
 

@@ -484,6 +484,7 @@ mod tests {
     use super::super::series::OWN;
     use super::*;
     use crate::exemplar::ExemplarStore;
+    use crate::plan::Settings;
     use crate::presets;
     use crate::still::{self, PreparedCloth, StillRequest};
 
@@ -491,7 +492,7 @@ mod tests {
     fn prepared(name: &str, level: u32) -> PreparedCloth {
         let design = Arc::new(presets::design(name).unwrap().unwrap());
         let request = StillRequest {
-            dials: vec![("level".to_owned(), level.to_string())],
+            settings: Settings::default().at_level(level),
             ..StillRequest::default()
         };
         still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap()

@@ -2,8 +2,11 @@
 
 use std::fmt;
 
+use strum::{EnumString, IntoStaticStr, VariantArray};
+
 /// What the pixels of an image stand for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum ImageAs {
     /// The weave: one pixel a crossing, black or white.
     Weave,
@@ -18,7 +21,8 @@ pub enum ImageAs {
 }
 
 /// Which thread a black pixel puts on the face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Black {
     /// Black = warp up, as nearly all looms and programs have it.
     #[default]
@@ -33,7 +37,8 @@ pub enum Black {
 /// twill in the cloth. Pick 1 is woven first and lies at the bottom, so an image that
 /// starts at a top corner is turned by 180°. The side on which it counts ends changes
 /// numbers only. Both are remembered, and the image is written back as it was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Corner {
     /// The bottom row is pick 1, the left column end 1.
     #[default]
@@ -69,7 +74,8 @@ impl Corner {
 }
 
 /// What tells one region or yarn of an image from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Key {
     /// The displayed colour. Numbers follow lightness, from dark to light: programs sort
     /// palettes as they like, so a palette index means nothing from one saving to the next.
@@ -95,7 +101,8 @@ pub struct ImageReading {
 }
 
 /// The habits of a maker's images.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "lowercase")]
 pub enum Convention {
     /// Digital Weaving Norway's TC2, and bitmaps made for it in Photoshop: 1 bit, black =
     /// warp raised, read from the bottom row up, end 1 at the left; saved as TIFF (or BMP).
@@ -110,15 +117,11 @@ pub enum Convention {
 
 impl Convention {
     /// Every preset.
-    pub const ALL: [Self; 3] = [Self::Tc2, Self::Pointcarre, Self::ArahWeave];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Tc2 => "tc2",
-            Self::Pointcarre => "pointcarre",
-            Self::ArahWeave => "arahweave",
-        }
+        self.into()
     }
 
     /// How this maker's images are read.

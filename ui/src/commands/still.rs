@@ -16,17 +16,13 @@ use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::output;
 use pickglass::formats::volume::{self, VolumeFormat};
 use pickglass::job::Job;
+use pickglass::plan::{Settings, Subject};
 use pickglass::render::Backing;
-use pickglass::still::{self, Pass, StillError, StillReport, StillRequest, Stop};
-
-/// Paths per pixel when no way to stop is given.
-const USUAL_SPP: u32 = 64;
+use pickglass::still::{self, ALL_COLOURWAYS, Pass, StillError, StillReport, StillRequest, Stop};
+use pickglass::text::shell_word;
 
 /// Longer than anybody waits: no end at all.
 const LONGEST_SECONDS: f64 = 1e9;
-
-/// The name that asks for a sheet of every colourway.
-const ALL_COLOURWAYS: &str = "all";
 
 /// Makes the picture; the program began at `begun`.
 pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
@@ -44,12 +40,14 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     output::check(path, inputs)?;
     if is_volume {
         idle::of_volume(args)?;
-        let request = request(args, Backing::None);
+        let request = request(args, Backing::None)?;
+        idle::in_still(args, &request, Subject::Voxels)?;
         let work = Work::begin(&request.stop, begun);
         let volume = (volume, args.voxel);
         let made = still::render_grid(volume, &request, &work.job, &mut |pass| work.pass(pass));
         let (still, warnings) = work.ended(made)?;
         note_warnings(&warnings);
+        let still = still.made_from(source(args));
         still.save(path)?;
         return tell(&still.report, path, work.interrupt.happened(), args.json);
     }
@@ -61,11 +59,12 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     idle::in_reading(&args.design, &args.image)?;
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
-    let request = request(args, Backing::Itself);
+    let request = request(args, Backing::Itself)?;
+    idle::in_still(args, &request, Subject::Cloth)?;
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
         return sheet(args, &opened, &request, begun);
     }
-    let made = render_to(&opened, &request, path, begun)?;
+    let made = render_to(&opened, &request, path, begun, source(args))?;
     tell(&made.0, path, made.1, args.json)
 }
 
@@ -152,7 +151,7 @@ fn sheet(
     };
     let store = ExemplarStore::user();
     let sheet = still::render_sheet(&opened.design, request, &store, &work.job, &mut show);
-    let sheet = work.ended(sheet)?;
+    let sheet = work.ended(sheet)?.made_from(source(args));
     sheet.save(path)?;
     note_warnings(&sheet.report.warnings);
     let interrupted = work.interrupt.happened();
@@ -182,12 +181,13 @@ pub fn render_to(
     request: &StillRequest,
     path: &Path,
     begun: Instant,
+    source: String,
 ) -> anyhow::Result<(StillReport, bool)> {
     let work = Work::begin(&request.stop, begun);
     let still = still::render_still(&opened.design, request, &work.job, &mut |pass| {
         work.pass(pass);
     });
-    let still = work.ended(still)?;
+    let still = work.ended(still)?.made_from(source);
     still.save(path)?;
     Ok((still.report, work.interrupt.happened()))
 }
@@ -230,7 +230,14 @@ fn report_json(report: &StillReport, interrupted: bool) -> Value {
     let effects: Vec<Value> = report
         .effects
         .iter()
-        .map(|(name, on)| json!({ "name": name, "on": on }))
+        .map(|planned| {
+            json!({
+                "name": planned.effect.name(),
+                "on": planned.on,
+                "reason": planned.why,
+                "by": planned.by.to_string(),
+            })
+        })
         .collect();
     let light_error = (report.light_error).map(|error| (1e4 * f64::from(error)).round() / 1e4);
     json!({
@@ -262,35 +269,39 @@ fn refuse_absent_renderers(renderer: RendererArg) -> anyhow::Result<()> {
     anyhow::bail!("--renderer {name}: this build has no such renderer: use auto or cpu")
 }
 
+/// What is looked at and how it is read, as words of a command line.
+fn source(args: &StillArgs) -> String {
+    let voxel = args.voxel.map(|voxel| format!("--voxel {voxel}"));
+    let words = [shell_word(&args.design).into_owned()].into_iter();
+    let words = words.chain(args.sett.words()).chain(args.image.words());
+    words.chain(voxel).collect::<Vec<_>>().join(" ")
+}
+
 /// What is asked for, before `backing` where nothing is said of that.
-fn request(args: &StillArgs, backing: Backing) -> StillRequest {
-    let mut stop = Stop {
-        spp: args.spp,
-        seconds: args.seconds,
-        error: args.error,
-    };
-    if stop == Stop::default() {
-        stop.spp = Some(USUAL_SPP);
+fn request(args: &StillArgs, backing: Backing) -> anyhow::Result<StillRequest> {
+    let mut settings = Settings::default();
+    for turned in &args.dials {
+        turned.dial.turn(&mut settings, &turned.value)?;
     }
-    StillRequest {
+    Ok(StillRequest {
         width: args.size.width,
         height: args.size.height,
-        eye: None,
-        turned: false,
+        eye: args.eye,
+        turned: args.turned,
         view: args.view,
         width_mm: args.mm.map(|mm| mm as f32),
-        centre_mm: None,
+        centre_mm: args.centre,
         light: args.light.clone(),
         exposure_ev: args.exposure as f32,
         backing: args.backing.unwrap_or(backing),
         effects: args.effects.clone(),
-        dials: args
-            .dials
-            .iter()
-            .map(|dial| (dial.name.clone(), dial.value.clone()))
-            .collect(),
+        settings,
         seed: args.seed,
-        stop,
+        stop: Stop {
+            spp: args.spp,
+            seconds: args.seconds,
+            error: args.error,
+        },
         colourway: args.colourway.clone(),
-    }
+    })
 }

@@ -7,12 +7,12 @@ use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use pickglass::exemplar::{ExemplarSet, ExemplarStore};
 use pickglass::job::Job;
 use pickglass::synthesis::{
-    Catalogue, EdgeFix, Method, Placement, Quality, Randomisation, Rank, SeamRms, SynthesisSettings,
+    Catalogue, EdgeFix, Placement, Quality, Randomisation, Rank, SeamRms, SynthesisSettings,
 };
 use serde_json::json;
 
 use super::{note_warnings, seconds_json};
-use crate::cli::{MethodArg, SynthesizeArgs};
+use crate::cli::SynthesizeArgs;
 use crate::idle;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
@@ -34,11 +34,7 @@ pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
 
 fn settings(args: &SynthesizeArgs) -> SynthesisSettings {
     SynthesisSettings {
-        method: match args.method {
-            MethodArg::Naive => Method::Naive,
-            MethodArg::Greedy => Method::Greedy,
-            MethodArg::Dp => Method::Dp,
-        },
+        method: args.method,
         rank: match args.rank {
             0 => Rank::Off,
             rank => Rank::Truncated(rank),

@@ -7,6 +7,7 @@ use pickglass::cloth::{Part, Region};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume::{self, bytes_in_words};
 use pickglass::formats::{output, yarns};
+use pickglass::plan::Settings;
 use pickglass::still::{self, StillRequest};
 use pickglass::volume::source::VoxelSource;
 use serde_json::{Value, json};
@@ -34,7 +35,7 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         view: args.view,
         light: args.light.clone(),
         seed: args.seed,
-        dials: vec![("level".to_owned(), args.level.to_string())],
+        settings: Settings::default().at_level(args.level),
         ..StillRequest::default()
     };
     note_warnings(&still::light_warnings(&request)?);

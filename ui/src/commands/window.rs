@@ -15,6 +15,7 @@ use crate::window::{self, NoWindow, Start};
 use pickglass::formats::output;
 use pickglass::render::Backing;
 use pickglass::still::{StillRequest, Stop};
+use pickglass::text::shell_word;
 
 /// Where the picture goes when no window can open.
 const FALLBACK_PICTURE: &str = "cloth.png";
@@ -44,7 +45,12 @@ pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
                 "no window ({reason}): the work is in {} and is offered at the next start",
                 copy.display()
             )),
-            None => without_window(&opened, &reason, args.json),
+            None => {
+                let words = [shell_word(argument).into_owned()].into_iter();
+                let words = words.chain(args.sett.words()).chain(args.image.words());
+                let source = words.collect::<Vec<_>>().join(" ");
+                without_window(&opened, &reason, source, args.json)
+            }
         },
         Err(NoWindow::Broken(error)) => Err(error),
     }
@@ -62,7 +68,7 @@ fn carried(args: &WindowArgs) -> Vec<OsString> {
     carried
 }
 
-fn without_window(opened: &Opened, reason: &str, json: bool) -> anyhow::Result<()> {
+fn without_window(opened: &Opened, reason: &str, source: String, json: bool) -> anyhow::Result<()> {
     out::note(&format!(
         "No window ({reason}): rendering {} to {FALLBACK_PICTURE} instead.",
         opened.name()
@@ -79,6 +85,6 @@ fn without_window(opened: &Opened, reason: &str, json: bool) -> anyhow::Result<(
     };
     let path = Path::new(FALLBACK_PICTURE);
     output::check(path, opened.path.as_deref())?;
-    let (report, interrupted) = still::render_to(opened, &request, path, Instant::now())?;
+    let (report, interrupted) = still::render_to(opened, &request, path, Instant::now(), source)?;
     still::tell(&report, path, interrupted, json)
 }

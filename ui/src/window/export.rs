@@ -14,6 +14,7 @@ use super::{dialog, typing};
 use crate::tokens::{self, Palette};
 use crate::values;
 use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
+use pickglass::text::shell_word;
 
 /// What became of an export.
 pub enum Exported {
@@ -207,6 +208,10 @@ impl Export {
         still.width = form.width;
         still.stop = stop;
         still.backing = form.backing;
+        // Other files are read by options of their own.
+        let design = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "ron");
+        let source = self.source.as_ref().filter(design);
+        let source = source.map(|path| shell_word(&path.display().to_string()).into_owned());
         let design = form.design;
         let work = Running::start(ctx, "export", move |job, teller| {
             let rendered = still::render_still(&design, &still, job, &mut |pass| {
@@ -214,6 +219,10 @@ impl Export {
                 teller.tell_left(text, left);
             });
             teller.tell("finishing: denoising and writing".to_owned());
+            let rendered = rendered.map(|done| match source {
+                Some(source) => done.made_from(source),
+                None => done,
+            });
             match rendered.and_then(|done| done.save(&path).map(|()| done.report)) {
                 Ok(report) => Exported::Written(path, Box::new(report)),
                 Err(StillError::Cancelled(_)) => Exported::Cancelled,

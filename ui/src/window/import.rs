@@ -209,7 +209,7 @@ impl Import {
             .selected_text(name(maker))
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut maker, None, name(None));
-                for known in Convention::ALL {
+                for &known in Convention::ALL {
                     ui.selectable_value(&mut maker, Some(known), name(Some(known)));
                 }
             });

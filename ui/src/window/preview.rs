@@ -6,9 +6,10 @@ use std::time::Instant;
 use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
+use pickglass::plan::{EffectChoice, Settings};
 use pickglass::render::Backing;
 use pickglass::scene::View;
-use pickglass::still::{EffectChoice, Heading, LightChoice, StillRequest, usual_width_mm};
+use pickglass::still::{Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::text::visible;
 
 use super::action::Action;
@@ -42,16 +43,18 @@ const MOST_PIXELS: f32 = 4.0e6;
 pub struct PreviewSettings {
     pub store: ExemplarStore,
     pub effects: EffectChoice,
-    pub dials: Vec<(String, String)>,
+    pub settings: Settings,
 }
 
 impl Default for PreviewSettings {
     fn default() -> Self {
+        let mut settings = Settings::default();
+        // Each pass is shown.
+        settings.tracing.pass_spp = 1;
         Self {
             store: ExemplarStore::user(),
             effects: EffectChoice::default(),
-            // Each pass is shown.
-            dials: vec![("pass-spp".to_owned(), "1".to_owned())],
+            settings,
         }
     }
 }
@@ -82,7 +85,7 @@ pub struct Preview {
     /// Whether a view set anew shows the whole repeat, or the view's usual width.
     fit: bool,
     effects: EffectChoice,
-    dials: Vec<(String, String)>,
+    settings: Settings,
     laid: Option<Laid>,
     /// What was last asked of the worker, and of which cloth, by [`Laid::cloth`].
     asked: Option<(u64, StillRequest)>,
@@ -119,7 +122,7 @@ impl Preview {
             cloth_view: None,
             fit: false,
             effects: settings.effects,
-            dials: settings.dials,
+            settings: settings.settings,
             laid: None,
             asked: None,
             generation: 0,
@@ -465,7 +468,7 @@ impl Preview {
             // As exported pictures have it.
             backing: Backing::Itself,
             effects: self.effects.clone(),
-            dials: self.dials.clone(),
+            settings: self.settings,
             ..StillRequest::default()
         }
     }

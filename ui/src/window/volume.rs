@@ -12,6 +12,7 @@ use pickglass::formats::output;
 use pickglass::formats::volume::{self, Attachment, VolumeFileError, bytes_in_words};
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
+use pickglass::plan::Settings;
 use pickglass::still::{self, PreparedCloth, StillRequest};
 use pickglass::volume::source::VoxelSource;
 use pickglass::yarn::tubes::YarnTube;
@@ -71,7 +72,7 @@ impl Wanted {
             exposure_ev: shown.exposure_ev,
             seed: shown.seed,
             colourway: shown.colourway.clone(),
-            dials: vec![("level".to_owned(), self.level.to_string())],
+            settings: Settings::default().at_level(self.level),
             ..StillRequest::default()
         }
     }

@@ -131,7 +131,6 @@ fn a_cause_is_said_once_by_every_command() {
         &["still", "zero-box.vol", "-o", "a.png"],
         &["still", "oxford", "-o", "a.png", "--light", "absent.exr"],
         &["still", "oxford", "-o", "a.png", "--light", "broken.exr"],
-        &["still", "oxford", "-o", "a.png", "--set", "level=9"],
         &["volume", "oxford", "-o", "absent/a.vol"],
         &["synthesize", "absent.ron"],
     ] {

@@ -7,8 +7,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pickglass::edit::Document;
 use pickglass::exemplar::ExemplarStore;
+use pickglass::plan::{EffectBase, EffectChoice, Settings};
 use pickglass::presets;
-use pickglass::still::{EffectBase, EffectChoice, LightChoice};
+use pickglass::still::LightChoice;
 
 use crate::window::action::Action;
 use crate::window::preview::{Preview, PreviewSettings};
@@ -32,14 +33,15 @@ fn bench() -> Harness<'static, Bench> {
     Harness::builder().with_size([640.0, 480.0]).build_ui_state(
         |ui, bench: &mut Bench| {
             let preview = bench.preview.get_or_insert_with(|| {
-                let dial = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+                let mut settings = Settings::default().at_level(4);
+                settings.tracing.pass_spp = 1;
                 let settings = PreviewSettings {
                     store: ExemplarStore::user(),
                     effects: EffectChoice {
                         base: EffectBase::None,
                         changes: Vec::new(),
                     },
-                    dials: vec![dial("pass-spp", "1"), dial("level", "4")],
+                    settings,
                 };
                 Preview::new(ui.ctx(), settings).expect("a worker")
             });

@@ -31,7 +31,7 @@ use super::app::{App, AppOptions};
 use super::preview::PreviewSettings;
 use crate::opened::Opened;
 use pickglass::exemplar::ExemplarStore;
-use pickglass::still::{EffectBase, EffectChoice};
+use pickglass::plan::{EffectBase, EffectChoice, Settings};
 
 type Window = Harness<'static, App>;
 
@@ -43,14 +43,15 @@ fn builder() -> HarnessBuilder<App> {
 
 /// Pictures that are there at once: what they look like is tested elsewhere.
 fn crude() -> PreviewSettings {
-    let dial = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    let mut settings = Settings::default().at_level(4);
+    settings.tracing.pass_spp = 1;
     PreviewSettings {
         store: ExemplarStore::user(),
         effects: EffectChoice {
             base: EffectBase::None,
             changes: Vec::new(),
         },
-        dials: vec![dial("pass-spp", "1"), dial("level", "4")],
+        settings,
     }
 }
 

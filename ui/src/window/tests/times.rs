@@ -8,7 +8,7 @@ use std::time::Instant;
 use egui::{Event, PointerButton};
 use pickglass::design::{Design, Family, Srgb, Yarn, YarnId};
 use pickglass::edit::{Cells, Edit, Rect};
-use pickglass::still::EffectChoice;
+use pickglass::plan::{EffectChoice, Settings};
 
 use super::large::{paint, satin};
 use super::{PreviewSettings, Window, builder, options, wait_for};
@@ -101,7 +101,7 @@ fn live(opened: Opened) -> Window {
         options.preview = PreviewSettings {
             store: ExemplarStore::user(),
             effects: EffectChoice::default(),
-            dials: Vec::new(),
+            settings: Settings::default(),
         };
     }
     let mut window: Window = builder()

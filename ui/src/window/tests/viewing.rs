@@ -195,7 +195,7 @@ fn the_export_form_renders_into_a_file() {
     assert_eq!(picture.width(), 64);
     // Unless it is said otherwise, no background shows between the threads.
     let written = std::fs::read(&path).expect("read");
-    let settings = b"backing: Itself";
+    let settings = b"--backing self";
     assert!(
         written
             .windows(settings.len())

@@ -19,7 +19,7 @@ use pickglass::still::{self, Followed, PreparedCloth, StillError, StillRequest, 
 use super::{Building, Desk, Fibres, Phase, PreviewRequest};
 
 /// Voxel level of the cloth that is drawn until the full one is built.
-const COARSE_LEVEL: &str = "3";
+const COARSE_LEVEL: u32 = 3;
 
 /// A cloth and the request it was made for.
 pub(super) type Kept = (PreviewRequest, Arc<PreparedCloth>);
@@ -34,7 +34,7 @@ pub(super) struct Builder {
 impl Builder {
     /// Whether what is being built also serves another request.
     fn serves(&self, request: &PreviewRequest, classes: &YarnClasses) -> bool {
-        self.request.same_dials(request)
+        self.request.same_settings(request)
             && self.classes.pairs == classes.pairs
             && self.classes.pitch == classes.pitch
     }
@@ -68,7 +68,7 @@ pub(super) fn cloth_of(
         Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&request.still) => {
             return Ok(Some((cloth, Fibres::Full)));
         }
-        Some((made_for, cloth)) if made_for.same_dials(request) => {
+        Some((made_for, cloth)) if made_for.same_settings(request) => {
             match cloth.follow(&request.design, &request.drawdown, &request.still, job)? {
                 Some(Followed::Ready(cloth)) => {
                     let cloth = Arc::new(cloth);
@@ -97,14 +97,12 @@ fn coarse_cloth(
     coarse: &mut Option<Kept>,
 ) -> Result<Arc<PreparedCloth>, StillError> {
     let mut still = request.still.clone();
-    still
-        .dials
-        .push(("level".to_owned(), COARSE_LEVEL.to_owned()));
+    still.settings.cloth.level = COARSE_LEVEL;
     let followed = match coarse {
         Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&still) => {
             return Ok(Arc::clone(cloth));
         }
-        Some((made_for, cloth)) if made_for.same_dials(request) => {
+        Some((made_for, cloth)) if made_for.same_settings(request) => {
             cloth.follow(&request.design, &request.drawdown, &still, job)?
         }
         _ => None,

@@ -57,13 +57,13 @@ impl PreviewRequest {
         Arc::ptr_eq(&self.design, &other.design)
             && Arc::ptr_eq(&self.drawdown, &other.drawdown)
             && self.still.colourway == other.still.colourway
-            && self.same_dials(other)
+            && self.same_settings(other)
     }
 
     /// Whether the cloth of one may follow to that of the other.
-    fn same_dials(&self, other: &Self) -> bool {
+    fn same_settings(&self, other: &Self) -> bool {
         self.still.seed == other.still.seed
-            && self.still.dials == other.still.dials
+            && self.still.settings == other.still.settings
             && self.still.effects == other.still.effects
     }
 }
@@ -523,7 +523,7 @@ fn serve(
 mod tests {
     use super::*;
     use crate::opened::Opened;
-    use pickglass::still::{EffectBase, EffectChoice};
+    use pickglass::plan::{EffectBase, EffectChoice, Settings};
     use std::time::Duration;
 
     fn request(generation: u64, design: &Arc<Design>) -> PreviewRequest {
@@ -534,7 +534,7 @@ mod tests {
                 base: EffectBase::None,
                 changes: Vec::new(),
             },
-            dials: vec![("level".to_owned(), "4".to_owned())],
+            settings: Settings::default().at_level(4),
             ..StillRequest::default()
         };
         PreviewRequest {

@@ -65,15 +65,14 @@ fn desk() -> (Arc<Desk>, Arc<Mutex<Vec<Picture>>>) {
 }
 
 fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
+    let mut still = view.still.clone();
+    still.settings.tracing.pass_spp = 1;
     PreviewRequest {
         generation,
         aim: Aim::Pane,
         design: Arc::clone(&view.design),
         drawdown: Arc::clone(&view.drawdown),
-        still: StillRequest {
-            dials: vec![("pass-spp".to_owned(), "1".to_owned())],
-            ..view.still.clone()
-        },
+        still,
         quality: Quality::Good,
         blank: false,
     }

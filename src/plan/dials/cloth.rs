@@ -1,0 +1,34 @@
+//! Dials of the voxels that are looked at.
+
+use crate::exemplar::COARSEST_LEVEL;
+use crate::plan::dial::{Dial, Invalidates, number, switch, switched};
+
+pub(super) static LEVEL: Dial = Dial {
+    name: "level",
+    about: "coarseness of the voxels, each step twice as large",
+    values: "4 to 0",
+    ladder: &["4", "3", "2", "1", "0"],
+    invalidates: Invalidates::Exemplars,
+    effect: None,
+    of_voxels: false,
+    get: |settings| settings.cloth.level.to_string(),
+    set: |settings, text| {
+        settings.cloth.level = number(text, 0..=COARSEST_LEVEL)?;
+        Some(())
+    },
+};
+
+pub(super) static LEVEL_CORRECTION: Dial = Dial {
+    name: "level-correction",
+    about: "coarse voxels are corrected for what averaging does to light",
+    values: "off or on",
+    ladder: &["off", "on"],
+    invalidates: Invalidates::Seams,
+    effect: None,
+    of_voxels: false,
+    get: |settings| switched(settings.cloth.correct_levels),
+    set: |settings, text| {
+        settings.cloth.correct_levels = switch(text)?;
+        Some(())
+    },
+};

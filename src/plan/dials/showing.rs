@@ -1,0 +1,41 @@
+//! Dials of showing and writing a traced picture.
+
+use crate::formats::png::Depth;
+use crate::plan::dial::{Dial, Invalidates, switch, switched};
+
+pub(super) static DENOISE: Dial = Dial {
+    name: "denoise",
+    about: "noise is filtered out of what is shown",
+    values: "off or on",
+    ladder: &["off", "on"],
+    invalidates: Invalidates::Showing,
+    effect: None,
+    of_voxels: true,
+    get: |settings| switched(settings.showing.denoise),
+    set: |settings, text| {
+        settings.showing.denoise = switch(text)?;
+        Some(())
+    },
+};
+
+pub(super) static PNG_BITS: Dial = Dial {
+    name: "png-bits",
+    about: "bits of a sample of a PNG",
+    values: "8 or 16",
+    ladder: &["8", "16"],
+    invalidates: Invalidates::Showing,
+    effect: None,
+    of_voxels: true,
+    get: |settings| match settings.showing.png_depth {
+        Depth::Eight => "8".to_owned(),
+        Depth::Sixteen => "16".to_owned(),
+    },
+    set: |settings, text| {
+        settings.showing.png_depth = match text {
+            "8" => Depth::Eight,
+            "16" => Depth::Sixteen,
+            _ => return None,
+        };
+        Some(())
+    },
+};

@@ -1,0 +1,58 @@
+//! Dials of the synthesis.
+
+use crate::plan::dial::{Dial, Invalidates, number};
+use crate::plan::effect::Effect;
+use crate::synthesis::Rank;
+
+pub(super) static METHOD: Dial = Dial {
+    name: "method",
+    about: "how blocks are chosen for crossings",
+    values: "naive, greedy or dp",
+    ladder: &["naive", "greedy", "dp"],
+    invalidates: Invalidates::Assignment,
+    effect: None,
+    of_voxels: false,
+    get: |settings| settings.synthesis.method.to_string(),
+    set: |settings, text| {
+        settings.synthesis.method = text.parse().ok()?;
+        Some(())
+    },
+};
+
+pub(super) static RANK: Dial = Dial {
+    name: "rank",
+    about: "how finely seams between blocks are closed",
+    values: "0 to 1000, or exact",
+    ladder: &["0", "5", "15", "40", "exact"],
+    invalidates: Invalidates::Seams,
+    effect: Some(Effect::EdgeFixing),
+    of_voxels: false,
+    get: |settings| match settings.synthesis.rank {
+        Rank::Off => "0".to_owned(),
+        Rank::Truncated(rank) => rank.to_string(),
+        Rank::Exact => "exact".to_owned(),
+    },
+    set: |settings, text| {
+        settings.synthesis.rank = match text {
+            "exact" => Rank::Exact,
+            "0" => Rank::Off,
+            _ => Rank::Truncated(number(text, 1..=1000)?),
+        };
+        Some(())
+    },
+};
+
+pub(super) static PATCH: Dial = Dial {
+    name: "patch",
+    about: "edge of the patches that are randomised together, crossings",
+    values: "0 to 64",
+    ladder: &["0", "64", "8", "3", "1"],
+    invalidates: Invalidates::Assignment,
+    effect: Some(Effect::Randomisation),
+    of_voxels: false,
+    get: |settings| settings.synthesis.patch.to_string(),
+    set: |settings, text| {
+        settings.synthesis.patch = number(text, 0..=64)?;
+        Some(())
+    },
+};

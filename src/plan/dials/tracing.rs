@@ -1,0 +1,86 @@
+//! Dials of the path tracer.
+
+use crate::plan::dial::{Dial, Invalidates, number};
+use crate::plan::effect::Effect;
+
+pub(super) static ORDER: Dial = Dial {
+    name: "order",
+    about: "scatterings after which a path ends",
+    values: "1 to 4096",
+    ladder: &["1", "2", "4", "8", "16", "64", "256", "1024"],
+    invalidates: Invalidates::Picture,
+    effect: Some(Effect::Multiple),
+    of_voxels: true,
+    get: |settings| settings.tracing.max_order.to_string(),
+    set: |settings, text| {
+        settings.tracing.max_order = number(text, 1..=4096)?;
+        Some(())
+    },
+};
+
+pub(super) static ROULETTE_ORDER: Dial = Dial {
+    name: "roulette-order",
+    about: "scatterings after which paths play roulette",
+    values: "1 to 4096, or never",
+    ladder: &["1", "2", "4", "8", "16", "never"],
+    invalidates: Invalidates::Picture,
+    effect: Some(Effect::Multiple),
+    of_voxels: true,
+    get: |settings| match settings.tracing.roulette_order {
+        u32::MAX => "never".to_owned(),
+        order => order.to_string(),
+    },
+    set: |settings, text| {
+        settings.tracing.roulette_order = match text {
+            "never" => u32::MAX,
+            _ => number(text, 1..=4096)?,
+        };
+        Some(())
+    },
+};
+
+pub(super) static SHADOW_ROULETTE: Dial = Dial {
+    name: "shadow-roulette",
+    about: "radiance below which shadow rays play roulette",
+    values: "1 to 0",
+    ladder: &["1", "0.3", "0.1", "0.03", "0"],
+    invalidates: Invalidates::Picture,
+    effect: Some(Effect::Shadows),
+    of_voxels: true,
+    get: |settings| settings.tracing.shadow_roulette.to_string(),
+    set: |settings, text| {
+        let share = text.parse().ok()?;
+        let taken = (0.0..=1.0).contains(&share);
+        taken.then(|| settings.tracing.shadow_roulette = share)
+    },
+};
+
+pub(super) static PASS_SPP: Dial = Dial {
+    name: "pass-spp",
+    about: "paths a pixel between two looks at the picture",
+    values: "1 to 1024",
+    ladder: &["1", "4", "16"],
+    invalidates: Invalidates::Picture,
+    effect: None,
+    of_voxels: true,
+    get: |settings| settings.tracing.pass_spp.to_string(),
+    set: |settings, text| {
+        settings.tracing.pass_spp = number(text, 1..=1024)?;
+        Some(())
+    },
+};
+
+pub(super) static BACKING_LAYERS: Dial = Dial {
+    name: "backing-layers",
+    about: "layers of the cloth where it lies on itself",
+    values: "1 to 16",
+    ladder: &["1", "2", "4", "8", "16"],
+    invalidates: Invalidates::Picture,
+    effect: None,
+    of_voxels: false,
+    get: |settings| settings.tracing.backing_layers.to_string(),
+    set: |settings, text| {
+        settings.tracing.backing_layers = number(text, 1..=16)?;
+        Some(())
+    },
+};

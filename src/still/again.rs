@@ -1,0 +1,129 @@
+//! The command line that makes a picture again: what a picture's file says of how it was asked
+//! for, in the program's own grammar.
+
+use super::request::{LightChoice, StillReport, StillRequest};
+use crate::plan::{DIALS, EffectChoice, Settings};
+use crate::text::shell_word;
+
+/// What a picture's file says of how it is made again.
+#[derive(Debug, Clone)]
+pub(super) struct Again {
+    /// What a command line calls what it shows, with the options for reading it.
+    pub source: Option<String>,
+    options: String,
+}
+
+impl Again {
+    /// Of a picture of `request` that came about as `report` says.
+    pub fn new(request: &StillRequest, report: &StillReport) -> Self {
+        Self {
+            source: None,
+            options: options(request, report),
+        }
+    }
+
+    /// The whole command line.
+    pub fn line(&self) -> String {
+        let source = self.source.as_deref().unwrap_or("DESIGN");
+        format!("pickglass still {source} -o OUT.png {}", self.options)
+    }
+}
+
+/// The options of `pickglass still` that make the picture of `request` again, with as many
+/// paths a pixel as `report` says it has. Dials stand there where they are not as usual.
+fn options(request: &StillRequest, report: &StillReport) -> String {
+    let mut words = Vec::new();
+    let mut say = |name: &str, value: String| words.push(format!("--{name} {value}"));
+    say("size", format!("{}x{}", request.width, request.height));
+    say("spp", report.spp.to_string());
+    say("view", request.view.to_string());
+    if let Some(eye) = request.eye {
+        say("eye", eye.to_string());
+    }
+    if let Some(mm) = request.width_mm {
+        say("mm", mm.to_string());
+    }
+    if let Some([x, y]) = request.centre_mm {
+        say("centre", format!("{x},{y}"));
+    }
+    say("light", light(&request.light));
+    if request.exposure_ev.abs() > 0.0 {
+        say("exposure", request.exposure_ev.to_string());
+    }
+    say("backing", request.backing.to_string());
+    say("effects", effects(&request.effects));
+    if let Some(colourway) = &request.colourway {
+        say("colourway", shell_word(colourway).into_owned());
+    }
+    say("seed", request.seed.to_string());
+    let usual = Settings::default();
+    for dial in DIALS {
+        let value = dial.get(&request.settings);
+        if value != dial.get(&usual) {
+            say("set", format!("{}={value}", dial.name));
+        }
+    }
+    if request.turned {
+        words.push("--turned".to_owned());
+    }
+    words.join(" ")
+}
+
+fn light(choice: &LightChoice) -> String {
+    match choice {
+        LightChoice::Preset(name) => shell_word(name).into_owned(),
+        LightChoice::Environment(path) => shell_word(&path.display().to_string()).into_owned(),
+        LightChoice::Sun(heading) => heading.to_string(),
+    }
+}
+
+fn effects(choice: &EffectChoice) -> String {
+    let changes = choice.changes.iter().map(|(effect, on)| {
+        let sign = if *on { '+' } else { '-' };
+        format!(",{sign}{effect}")
+    });
+    changes.fold(choice.base.to_string(), |words, word| words + &word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Effect, EffectBase};
+    use crate::render::Backing;
+    use crate::still::Heading;
+
+    #[test]
+    fn all_that_was_asked_for_is_said() {
+        let mut request = StillRequest {
+            width: 64,
+            height: 48,
+            eye: Some(Heading {
+                azimuth: 270,
+                elevation: 40,
+            }),
+            turned: true,
+            width_mm: Some(2.5),
+            centre_mm: Some([-1.0, 0.25]),
+            light: LightChoice::Environment("my light.exr".into()),
+            backing: Backing::Itself,
+            effects: EffectChoice {
+                base: EffectBase::None,
+                changes: vec![(Effect::Sky, true), (Effect::EdgeFixing, false)],
+            },
+            colourway: Some("it's".to_owned()),
+            ..StillRequest::default()
+        };
+        request.settings.cloth.level = 2;
+        let report = StillReport {
+            spp: 12,
+            ..StillReport::default()
+        };
+        assert_eq!(
+            options(&request, &report),
+            "--size 64x48 --spp 12 --view face --eye 270,40 --mm 2.5 --centre -1,0.25 \
+             --light 'my light.exr' --backing self \
+             --effects none,+sky,-edge-fixing --colourway 'it'\\''s' --seed 0 --set level=2 \
+             --turned"
+        );
+    }
+}
