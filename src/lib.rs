@@ -27,19 +27,20 @@
 //! | [`film`] | sums of paths, their error, the picture made of them | `job` `scene` |
 //! | [`render`] | traces any medium into a film | `random` `job` `scene` `film` |
 //! | [`volume`] | voxels in a grid, as a medium | `scene` `render` |
-//! | [`cloth`] | the implicit volume of a design | `random` `job` `design` `yarn` `synthesis` `exemplar` `scene` `render` `volume` |
+//! | [`cloth`] | the implicit volume of a design | `random` `job` `memory` `design` `yarn` `synthesis` `exemplar` `scene` `render` `volume` |
 //! | [`posterise`] | a photograph becomes weaves | `job` `memory` `design` `cloth` |
 //! | [`formats`] | files of other programs and our own | `job` `limits` `memory` `text` `atomic` `design` `yarn` `scene` `film` `volume` |
 //! | [`edit`] | changes, undo, recovery | `atomic` `design` `formats` |
 //! | [`mod@print`] | a design as PDF | `text` `design` |
 //! | [`presets`] | designs inside the program | `design` `formats` |
 //! | [`plan`] | what a picture simulates, and how closely | `synthesis` `exemplar` `render` `cloth` `formats` |
-//! | [`still`] | a design becomes a picture | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
+//! | [`engine`] | draws a design: the table of engines, stills, sheets | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
 
 pub mod atomic;
 pub mod cloth;
 pub mod design;
 pub mod edit;
+pub mod engine;
 pub mod exemplar;
 pub mod film;
 pub mod formats;
@@ -54,7 +55,6 @@ pub mod print;
 pub mod random;
 pub mod render;
 pub mod scene;
-pub mod still;
 pub mod synthesis;
 pub mod text;
 pub mod volume;

@@ -12,7 +12,7 @@ use std::path::Path;
 use syn::visit::{self, Visit};
 
 /// Files of the library that stand in a circle of imports. It may fall, never grow.
-const MOST_IN_CIRCLES: usize = 77;
+const MOST_IN_CIRCLES: usize = 74;
 
 /// Names from the root of the crate to a module.
 type Module = Vec<String>;
@@ -466,8 +466,8 @@ fn a_wrong_import_is_found() {
     let mut sources = sources();
     let rows = table(&sources["lib.rs"]);
     let wrong = [
-        ("use crate::still::Request;", "yarn", "still"),
-        ("use crate::{still::Request};", "yarn", "still"),
+        ("use crate::engine::Request;", "yarn", "engine"),
+        ("use crate::{still::Request};", "yarn", "engine"),
         ("fn f() { crate::render::trace(); }", "yarn", "render"),
         (
             "fn f() { assert!(crate::cloth::is() == 1); }",
@@ -485,7 +485,7 @@ fn a_wrong_import_is_found() {
         sources.remove("yarn/wrong.rs");
     }
     // In tests a module may name whatever it needs.
-    let test = "#[cfg(test)] mod tests { use crate::still::Request; }";
+    let test = "#[cfg(test)] mod tests { use crate::engine::Request; }";
     sources.insert("yarn/right.rs".to_owned(), test.to_owned());
     assert!(faults(&House::read(&sources), &rows).is_empty());
     sources.remove("yarn/right.rs");

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::build::ClothVolume;
 use crate::design::Positions;
 use crate::render::Voxel;
+use crate::synthesis::Stretch;
 use crate::volume::sggx_matrix;
 use crate::volume::source::{CellBox, Frame, NO_YARN, SourceVoxel, VoxelSource, fibres_of, upper};
 
@@ -32,6 +33,17 @@ pub struct Region {
     pub ends: u32,
     /// Picks.
     pub picks: u32,
+}
+
+impl Region {
+    /// The same as what is looked at.
+    pub fn extent(&self) -> Stretch {
+        let range = |first: i64, count: u32| first..first.saturating_add(i64::from(count));
+        Stretch {
+            ends: range(self.end, self.ends),
+            picks: range(self.pick, self.picks),
+        }
+    }
 }
 
 impl std::fmt::Display for Region {

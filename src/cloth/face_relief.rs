@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::design::{Direction, WeavePattern};
 use crate::exemplar::{Pair, layout};
+use crate::scene::Pose;
 use crate::synthesis::{Catalogue, KEYS, Side, key_of};
 use crate::yarn::WeaveGeometry;
 
@@ -41,19 +42,20 @@ pub struct FaceRelief {
     pub(super) spots: Vec<Spot>,
     /// Crossings of each neighbourhood that the spots are of.
     pub(super) counts: [f32; KEYS],
-    pub(super) back: bool,
+    /// Which side is seen.
+    pub(super) pose: Pose,
 }
 
 impl FaceRelief {
     /// The relief of a pair at a spacing of ends and picks (mm), seen from the face or the
     /// back.
-    pub fn new(catalogue: &Catalogue, pair: &Pair, pitch: Vec2, back: bool) -> Self {
+    pub fn new(catalogue: &Catalogue, pair: &Pair, pitch: Vec2, pose: Pose) -> Self {
         let spots = (0..catalogue.exemplars())
             .into_par_iter()
             .flat_map_iter(|exemplar| {
                 let weave = &catalogue.weaves()[exemplar];
                 let geometry = layout(catalogue, pair, pitch, exemplar);
-                Heights::of(&geometry, back).spots(weave)
+                Heights::of(&geometry, pose).spots(weave)
             })
             .collect();
         let mut counts = [0.0; KEYS];
@@ -67,7 +69,7 @@ impl FaceRelief {
         Self {
             spots,
             counts,
-            back,
+            pose,
         }
     }
 }
@@ -93,14 +95,14 @@ struct Heights {
 }
 
 impl Heights {
-    fn of(weave: &WeaveGeometry, back: bool) -> Self {
+    fn of(weave: &WeaveGeometry, pose: Pose) -> Self {
         let size = [weave.warp.len(), weave.weft.len()].map(|threads| (threads * TEXELS) as i64);
         let texel = weave.pitch / TEXELS as f32;
         let mut z = Vec::with_capacity((size[0] * size[1]) as usize);
         let mut warp = Vec::with_capacity(z.capacity());
         for row in 0..size[1] {
             for column in 0..size[0] {
-                let top = top_at(weave, [column, row], texel, back);
+                let top = top_at(weave, [column, row], texel, pose);
                 z.push(top.map_or(f32::NAN, |(z, _)| z));
                 warp.push(top.map(|(_, warp)| warp));
             }
@@ -185,9 +187,9 @@ fn top_at(
     weave: &WeaveGeometry,
     [column, row]: [i64; 2],
     texel: Vec2,
-    back: bool,
+    pose: Pose,
 ) -> Option<(f32, bool)> {
-    let side = if back { -1.0 } else { 1.0 };
+    let side = pose.up();
     let place = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) * texel;
     let (end, pick) = (column / TEXELS as i64, row / TEXELS as i64);
     let mut top: Option<(f32, bool)> = None;
@@ -210,7 +212,7 @@ fn top_at(
         ] {
             let index = thread.rem_euclid(weave.yarns(direction).len() as i64);
             let across = across - (thread - index) as f32 * pitch;
-            let surface = weave.surface(direction, index as usize, along, across, !back);
+            let surface = weave.surface(direction, index as usize, along, across, !pose.back);
             if let Some(z) = surface.map(|z| side * z)
                 && top.is_none_or(|(highest, _)| z > highest)
             {

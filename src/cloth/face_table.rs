@@ -10,7 +10,7 @@
 use glam::Vec3;
 
 use super::face_relief::{AZIMUTHS, FaceRelief, Spot, TEXELS};
-use crate::scene::{Environment, LightRig, Sky, luminance};
+use crate::scene::{Environment, LightRig, Pose, Sky, luminance};
 use crate::synthesis::KEYS;
 
 /// Texels along a side, level by level.
@@ -56,10 +56,8 @@ impl FaceTable {
     pub fn new(relief: &FaceRelief, rig: &LightRig) -> Self {
         let mut usual = LightRig::preset("day").unwrap_or_else(|_| rig.clone());
         // The default light stays with the eye, whichever side that looks at.
-        if relief.back {
-            usual = usual.turned_over();
-        }
-        let lamps = [lamps(rig, relief.back), lamps(&usual, relief.back)];
+        usual = usual.on(relief.pose);
+        let lamps = [lamps(rig, relief.pose), lamps(&usual, relief.pose)];
         let blank = vec![Texel::default(); KEYS * TEXELS * TEXELS];
         let mut sums = [blank.clone(), blank];
         for spot in &relief.spots {
@@ -171,9 +169,9 @@ impl Lamp {
 }
 
 /// The lights of a rig as far lamps, z towards the side that is looked at.
-fn lamps(rig: &LightRig, back: bool) -> Vec<Lamp> {
+fn lamps(rig: &LightRig, pose: Pose) -> Vec<Lamp> {
     use std::f32::consts::PI;
-    let side = if back { -1.0 } else { 1.0 };
+    let side = pose.up();
     let turn = rig.sky_turn();
     let seen = |towards: Vec3| Vec3::new(towards.x, towards.y, side * towards.z);
     let mut lamps: Vec<Lamp> = (rig.suns.iter())
@@ -247,21 +245,22 @@ mod tests {
     use crate::yarn::YarnRecipe;
     use glam::Vec2;
 
+    fn pose(back: bool) -> Pose {
+        Pose { back, ..Pose::FACE }
+    }
+
     fn relief(back: bool) -> FaceRelief {
         let recipe = YarnRecipe::family(Family::Cotton, 0.3);
         let pair = Pair {
             warp: recipe.clone(),
             weft: recipe,
         };
-        FaceRelief::new(&Catalogue::standard(), &pair, Vec2::splat(0.36), back)
+        FaceRelief::new(&Catalogue::standard(), &pair, Vec2::splat(0.36), pose(back))
     }
 
     fn table(light: &str, back: bool) -> FaceTable {
-        let mut rig = LightRig::preset(light).unwrap();
-        if back {
-            rig = rig.turned_over();
-        }
-        FaceTable::new(&relief(back), &rig)
+        let rig = LightRig::preset(light).unwrap();
+        FaceTable::new(&relief(back), &rig.on(pose(back)))
     }
 
     #[test]

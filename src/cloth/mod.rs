@@ -6,6 +6,7 @@
 //! so its colour and gloss, is looked up in the design's maps at that moment: recolouring
 //! never makes a new assignment.
 //!
+//! [`prepare`] makes a design into a [`PreparedCloth`], which follows its edits. Its
 //! [`ClothVolume`] is a [`Medium`](crate::render::Medium) like any dense grid.
 
 mod build;
@@ -19,6 +20,7 @@ mod hair_cells;
 mod hairs;
 pub mod levels;
 mod lookup;
+mod prepare;
 mod walk;
 mod window;
 
@@ -27,4 +29,7 @@ pub use export::{ClothWindow, Part, Region, WindowError};
 pub use face_relief::{FaceRelief, TEXELS};
 pub use face_table::{FaceTable, Texel};
 pub use hairs::{HairLayer, HairWalk};
+pub use prepare::{
+    Followed, PreparedCloth, UnfinishedCloth, check_extent, needed, prepare, prepare_woven,
+};
 pub use walk::{ClothWalk, REACH_MM};

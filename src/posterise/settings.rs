@@ -3,6 +3,7 @@
 use super::PosteriseError;
 use super::resample::{Layout, MAX_PANEL};
 use crate::design::{Family, Sett, Srgb, check_size};
+use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 
 /// The most colours a picture is reduced to.
 pub const MAX_COLOURS: u16 = 256;
@@ -12,7 +13,10 @@ const USUAL_ENDS: u32 = 960;
 const REPEAT: f64 = 8.0;
 
 /// How the picture is brought to the panel's shape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Display, EnumString, IntoStaticStr, VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Fit {
     /// It fills the panel; what stands over is cut off, alike on both sides.
     #[default]

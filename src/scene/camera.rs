@@ -7,6 +7,7 @@ use glam::Vec3;
 use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 
 use super::Ray;
+use super::pose::Pose;
 
 /// How rays leave the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,10 +71,17 @@ impl View {
         self.into()
     }
 
-    /// Whether the cloth is turned over; the light then wants
-    /// [`super::LightRig::turned_over`].
-    pub fn turns_over(self) -> bool {
-        self == Self::Back
+    /// How the cloth lies in this view, turned by 180° or not.
+    pub fn pose(self, turned: bool) -> Pose {
+        Pose {
+            back: self == Self::Back,
+            turned,
+        }
+    }
+
+    /// Whether it is straight on the cloth, without perspective.
+    pub fn is_straight(self) -> bool {
+        matches!(self, Self::Face | Self::Back)
     }
 
     /// The camera of this view at a target (mm, cloth space), `width_mm` across the
@@ -84,9 +92,9 @@ impl View {
             Vec3::new(0.0, -cosine, sine)
         };
         match self {
-            Self::Face => Camera::orthographic(target, Vec3::Z, Vec3::Y, width_mm, width, height),
-            Self::Back => {
-                Camera::orthographic(target, Vec3::NEG_Z, Vec3::Y, width_mm, width, height)
+            Self::Face | Self::Back => {
+                let from = Vec3::Z * self.pose(false).up();
+                Camera::orthographic(target, from, Vec3::Y, width_mm, width, height)
             }
             Self::Close => {
                 Camera::perspective(target, from(70.0), Vec3::Y, 20.0, width_mm, width, height)
@@ -187,7 +195,7 @@ impl Camera {
     /// picture: what lay below is above, and no Z becomes an S. Straight on the cloth that is
     /// the picture turned by 180°.
     pub fn turned(self) -> Self {
-        let turn = Vec3::new(-1.0, -1.0, 1.0);
+        let turn = Pose::TURNED.turn();
         Self {
             eye: self.target + (self.eye - self.target) * turn,
             right: self.right * turn,

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::environment::{Dome, luminance};
 use super::environment_image::EnvironmentImage;
+use super::pose::Pose;
 
 /// A far, small light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,10 +60,8 @@ pub struct LightRig {
     pub sky: Sky,
     /// What was remarked on when its file was read, one line each.
     pub warnings: Vec<String>,
-    /// Whether x and z are negated between the sky and the cloth.
-    turned_over: bool,
-    /// Whether x and y are.
-    turned: bool,
+    /// How the cloth lies in it.
+    pose: Pose,
 }
 
 /// Why a rig could not be made.
@@ -150,10 +149,6 @@ fn preset_text(name: &str) -> Option<&'static str> {
     })
 }
 
-/// Half a turn about the y axis, and about the z axis.
-const OVER: Vec3 = Vec3::new(-1.0, 1.0, -1.0);
-const ROUND: Vec3 = Vec3::new(-1.0, -1.0, 1.0);
-
 impl LightRig {
     /// A built-in rig by name, see [`PRESET_NAMES`].
     pub fn preset(name: &str) -> Result<Self, LightError> {
@@ -233,8 +228,7 @@ impl LightRig {
             suns,
             sky,
             warnings: Vec::new(),
-            turned_over: false,
-            turned: false,
+            pose: Pose::FACE,
         })
     }
 
@@ -256,8 +250,7 @@ impl LightRig {
             suns: Vec::new(),
             sky: Sky::Image(Arc::new(image)),
             warnings,
-            turned_over: false,
-            turned: false,
+            pose: Pose::FACE,
         })
     }
 
@@ -268,30 +261,17 @@ impl LightRig {
             suns,
             sky,
             warnings: Vec::new(),
-            turned_over: false,
-            turned: false,
+            pose: Pose::FACE,
         }
     }
 
-    /// The rig for looking at the back: the cloth is turned over about its y axis (the
-    /// warp, the way one turns a page), the light stays with the viewer. In cloth space
-    /// the light turns instead: x and z change sign.
-    pub fn turned_over(&self) -> Self {
+    /// The rig for cloth that lies like this, or once more so: the light stays with the
+    /// viewer, so that in cloth space it turns instead.
+    pub fn on(&self, pose: Pose) -> Self {
         let mut rig = self.clone();
-        rig.turned_over = !self.turned_over;
+        rig.pose = self.pose.and(pose);
         for sun in &mut rig.suns {
-            sun.towards *= OVER;
-        }
-        rig
-    }
-
-    /// The rig for cloth that is turned by 180° as it lies, so that what was below is above:
-    /// the light stays with the viewer. In cloth space it turns instead: x and y change sign.
-    pub fn turned(&self) -> Self {
-        let mut rig = self.clone();
-        rig.turned = !self.turned;
-        for sun in &mut rig.suns {
-            sun.towards *= ROUND;
+            sun.towards *= pose.turn();
         }
         rig
     }
@@ -299,8 +279,6 @@ impl LightRig {
     /// What a direction in cloth space is multiplied by, axis by axis, where it is looked up
     /// in the sky, and one of the sky where it is brought into cloth space.
     pub fn sky_turn(&self) -> Vec3 {
-        let over = if self.turned_over { OVER } else { Vec3::ONE };
-        let round = if self.turned { ROUND } else { Vec3::ONE };
-        over * round
+        self.pose.turn()
     }
 }

@@ -1,7 +1,7 @@
 //! What is looked at from where, in which light: cameras, rays, lamps and skies.
 //!
 //! Space is the cloth's, in mm: x along the weft, y along the warp, z out of the face. A
-//! [`View`] makes a [`Camera`], a camera the [`Ray`]s of its pixels; a [`LightRig`] is a
+//! [`View`] of cloth in some [`Pose`] makes a [`Camera`], a camera the [`Ray`]s of its pixels; a [`LightRig`] is a
 //! [`Sky`] with [`Sun`]s, and any [`Environment`] answers what comes from a direction and
 //! chooses directions in proportion.
 
@@ -9,10 +9,12 @@ pub mod camera;
 pub mod environment;
 mod environment_image;
 pub mod light;
+mod pose;
 mod ray;
 
 pub use camera::{Camera, View};
 pub use environment::{Dark, Dome, Environment, EnvironmentSample, luminance};
 pub use environment_image::{EnvironmentError, EnvironmentImage, Replaced};
 pub use light::{LightError, LightRig, PRESET_NAMES, Sky, Sun};
+pub use pose::Pose;
 pub use ray::{Bounds, Ray};

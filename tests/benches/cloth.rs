@@ -7,12 +7,12 @@ use std::time::Instant;
 use glam::Vec3;
 use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use pickglass::design::Design;
+use pickglass::engine::usual_width_mm;
 use pickglass::exemplar::{Allowance, BlockMajorants, ExemplarStore};
 use pickglass::job::Job;
 use pickglass::presets;
 use pickglass::render::{RenderSettings, render};
 use pickglass::scene::{LightRig, View};
-use pickglass::still::usual_width_mm;
 use pickglass::synthesis::{Catalogue, EdgeFix, NeighbourBits};
 
 fn timed<T>(what: &str, work: impl FnOnce() -> T) -> T {
@@ -105,10 +105,9 @@ fn pictures(design: &Design, cloth: &ClothVolume) {
     ] {
         let width = usual_width_mm(view, design);
         let camera = view.camera(target, width, 320, 240);
-        let mut lights = LightRig::preset("day").expect("a preset");
-        if view.turns_over() {
-            lights = lights.turned_over();
-        }
+        let lights = LightRig::preset("day")
+            .expect("a preset")
+            .on(view.pose(false));
         let settings = RenderSettings {
             spp: 8,
             ..RenderSettings::default()

@@ -17,11 +17,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use pickglass::engine::{self, LightChoice, StillRequest, Stop};
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
 use pickglass::film::{Film, Pixel};
 use pickglass::job::Job;
 use pickglass::plan::Settings;
-use pickglass::still::{self, LightChoice, StillRequest, Stop};
 use pickglass::{atomic, presets};
 
 const DESIGNS: [&str; 6] = [
@@ -86,7 +86,7 @@ fn measured(name: &str, level: u32, corrected: bool, lights: &[&str], spp: u32) 
         ..StillRequest::default()
     };
     let begun = Instant::now();
-    let cloth = still::prepare(&design, &request, &ExemplarStore::none(), &Job::new());
+    let cloth = engine::prepare(&design, &request, &ExemplarStore::none(), &Job::new());
     let cloth = cloth.expect("a cloth");
     let seconds = begun.elapsed().as_secs_f64();
     let under = |light: &&str| {
@@ -95,7 +95,7 @@ fn measured(name: &str, level: u32, corrected: bool, lights: &[&str], spp: u32) 
             light,
             ..request.clone()
         };
-        let still = still::render(&cloth, &request, &Job::new(), &mut |_| {});
+        let still = engine::render(&cloth, &request, &Job::new(), &mut |_| {});
         Shown::of(&still.expect("a picture").film)
     };
     Measured {

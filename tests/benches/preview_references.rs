@@ -9,11 +9,11 @@
 #[path = "../common/preview_views/mod.rs"]
 mod preview_views;
 
+use pickglass::engine::{self, Stop};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::film::tone::encode_srgb;
 use pickglass::formats::png;
 use pickglass::job::Job;
-use pickglass::still::{self, Stop};
 use preview_views::{CROP, PreviewView, SIZE, SQUARE, reference_file, squares, visits};
 
 /// Error of the squares' means, unless another is asked for.
@@ -55,8 +55,8 @@ fn make(view: &PreviewView, error: f64, store: &ExemplarStore) {
         seconds: None,
     };
     let job = Job::new();
-    let cloth = still::prepare_woven(&view.design, &view.drawdown, &request, store, &job);
-    let still = still::render(&cloth.expect("a cloth"), &request, &job, &mut |_| {});
+    let cloth = engine::prepare_woven(&view.design, &view.drawdown, &request, store, &job);
+    let still = engine::render(&cloth.expect("a cloth"), &request, &job, &mut |_| {});
     let still = still.expect("a picture");
     let picture = still.picture();
     let (wide, cut) = (picture.width as usize, WIDER as usize / 2);

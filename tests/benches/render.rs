@@ -20,12 +20,12 @@ use std::sync::Arc;
 
 use glam::{UVec3, Vec3};
 use pickglass::design::{Design, Family, Filled, Structure, Yarn, YarnId, YarnMaps, usual_sett};
+use pickglass::engine::{StillRequest, prepare};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::presets;
 use pickglass::render::{Background, Medium, RenderSettings};
 use pickglass::scene::Bounds;
-use pickglass::still::{StillRequest, prepare};
 use pickglass::volume::{DenseGrid, GridVoxel, Optics, Taps};
 use render_scenes::peer::{PeerView, python, relative_mse, script, write_film, write_scene};
 use render_scenes::{shoot, silk_satin, wool_twill};

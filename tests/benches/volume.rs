@@ -9,13 +9,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use pickglass::cloth::{ClothVolume, ClothWindow, Part, Region};
+use pickglass::engine::{self, StillRequest};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume;
 use pickglass::job::Job;
 use pickglass::presets;
 use pickglass::render::{Background, RenderSettings, Scatterer, render};
 use pickglass::scene::{Camera, LightRig, View, luminance};
-use pickglass::still::{self, StillRequest};
 use pickglass::volume::Taps;
 use pickglass::volume::source::{CellBox, SourceVoxel, VoxelSource};
 
@@ -58,7 +58,7 @@ fn disk(folder: &Path, megabytes: usize) -> f64 {
 fn cloth_of(name: &str) -> ClothVolume {
     let design = presets::design(name).expect("there").expect("sound");
     let request = StillRequest::default();
-    let prepared = still::prepare(
+    let prepared = engine::prepare(
         &Arc::new(design),
         &request,
         &ExemplarStore::user(),

@@ -25,10 +25,7 @@ fn look(name: &str, cloth: &ClothVolume) -> f32 {
     for view in [View::Face, View::Back, View::Oblique, View::Grazing] {
         let width = 5.0 * pitch.x.max(pitch.y);
         let camera = view.camera(pitch * 7.3, width, 20, 16);
-        let mut lights = LightRig::preset("sun").unwrap();
-        if view.turns_over() {
-            lights = lights.turned_over();
-        }
+        let lights = LightRig::preset("sun").unwrap().on(view.pose(false));
         let settings = RenderSettings {
             spp: 4,
             ..RenderSettings::default()

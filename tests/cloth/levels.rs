@@ -5,11 +5,11 @@
 use std::sync::Arc;
 
 use pickglass::design::Sett;
+use pickglass::engine::{self, StillRequest, Stop};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::plan::{Settings, dial};
 use pickglass::presets;
-use pickglass::still::{self, StillRequest, Stop};
 
 /// Mean radiance and coverage of a design.
 fn shown(name: &str, level: u32, corrected: bool) -> [f64; 2] {
@@ -27,8 +27,8 @@ fn shown(name: &str, level: u32, corrected: bool) -> [f64; 2] {
         },
         ..StillRequest::default()
     };
-    let cloth = still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
-    let still = still::render(&cloth, &request, &Job::new(), &mut |_| {}).unwrap();
+    let cloth = engine::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap();
+    let still = engine::render(&cloth, &request, &Job::new(), &mut |_| {}).unwrap();
     assert_eq!(still.report.majorant_violations, 0);
     let pixels = still.film.pixels();
     let count = pixels.len() as f64;
@@ -81,8 +81,8 @@ fn a_coarse_cloth_says_how_far_its_light_is_off() {
             ..StillRequest::default()
         };
         let store = ExemplarStore::user();
-        let cloth = still::prepare(&Arc::new(design), &request, &store, &Job::new()).unwrap();
-        let report = still::render(&cloth, &request, &Job::new(), &mut |_| {})
+        let cloth = engine::prepare(&Arc::new(design), &request, &store, &Job::new()).unwrap();
+        let report = engine::render(&cloth, &request, &Job::new(), &mut |_| {})
             .unwrap()
             .report;
         assert_eq!(report.light_error, cloth.cloth().light_error());

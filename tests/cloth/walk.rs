@@ -76,10 +76,7 @@ fn a_walk_is_a_march() {
 
 fn picture(cloth: &ClothVolume, view: View) -> RenderOutcome {
     let camera = view.camera(Vec3::new(3.0, 3.0, 0.0), 4.0, 40, 30);
-    let mut lights = LightRig::preset("day").unwrap();
-    if view.turns_over() {
-        lights = lights.turned_over();
-    }
+    let lights = LightRig::preset("day").unwrap().on(view.pose(false));
     let settings = RenderSettings {
         spp: 4,
         ..RenderSettings::default()

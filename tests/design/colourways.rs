@@ -6,11 +6,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use pickglass::design::{Colourway, Design, Family, Srgb, Yarn};
+use pickglass::engine::{
+    AS_DESIGNED, StillRequest, Stop, prepare, reference, render, render_sheet,
+};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::ron;
 use pickglass::job::Job;
 use pickglass::presets;
-use pickglass::still::{AS_DESIGNED, StillRequest, Stop, prepare, render, render_sheet};
 
 fn herringbone() -> Design {
     presets::design("herringbone").unwrap().unwrap()
@@ -162,7 +164,15 @@ fn a_sheet_shows_every_colourway_in_its_place() {
     let store = ExemplarStore::at(folder.path(), 1 << 30);
     let job = Job::new();
     let design = Arc::new(herringbone());
-    let sheet = render_sheet(&design, &request(), &store, &job, &mut |_, _, _| ()).unwrap();
+    let sheet = render_sheet(
+        &design,
+        &request(),
+        reference(),
+        &store,
+        &job,
+        &mut |_, _, _| (),
+    )
+    .unwrap();
     let names: Vec<&str> = sheet
         .places
         .iter()
@@ -206,6 +216,13 @@ fn a_sheet_shows_every_colourway_in_its_place() {
     assert!(label.text.contains("autumn at 52,0"), "{}", label.text);
     assert!(sheet.save(&folder.path().join("sheet.exr")).is_err());
     let oxford = Arc::new(presets::design("oxford").unwrap().unwrap());
-    let none = render_sheet(&oxford, &request(), &store, &job, &mut |_, _, _| ());
+    let none = render_sheet(
+        &oxford,
+        &request(),
+        reference(),
+        &store,
+        &job,
+        &mut |_, _, _| (),
+    );
     assert!(none.is_err_and(|error| error.to_string().contains("own yarns only")));
 }

@@ -8,14 +8,15 @@
 use std::sync::Arc;
 
 use crate::memory::{alone, peak, reset_peak};
+use pickglass::cloth::Followed;
 use pickglass::design::{
     Design, Family, Fill, Filled, Lattice, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps,
     longest_floats, usual_sett,
 };
+use pickglass::engine::{StillRequest, Stop, covers, follow, prepare_woven, render};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::plan::{EffectBase, EffectChoice, Settings};
-use pickglass::still::{Followed, StillRequest, Stop, prepare_woven, render};
 use pickglass::synthesis::{Catalogue, Method, Stretch, SynthesisError, assign, assign_part};
 
 const ENDS: u32 = 16_000;
@@ -73,7 +74,7 @@ fn a_panel_is_made_into_cloth_where_one_looks() {
     }
     let here = look(3000.0, 2000.0);
     let cloth = prepare_woven(&design, &drawdown, &here, &store, &job).unwrap();
-    assert!(cloth.covers(&here));
+    assert!(covers(&cloth, &here));
     let (end, pick) = (
         design.end_positions().locate(3000.0).0,
         design.pick_positions().locate(2000.0).0,
@@ -93,13 +94,13 @@ fn a_panel_is_made_into_cloth_where_one_looks() {
     assert!(seen > 32 * 24 / 2, "cloth shows in {seen} pixels");
 
     let there = look(6000.0, 2000.0);
-    assert!(!cloth.covers(&there));
-    let moved = match cloth.follow(&design, &drawdown, &there, &job).unwrap() {
+    assert!(!covers(&cloth, &there));
+    let moved = match follow(&cloth, &design, &drawdown, &there, &job).unwrap() {
         Some(Followed::Ready(cloth)) => cloth,
         Some(Followed::Unfinished(cloth)) => cloth.complete(&store, &job).unwrap(),
         None => panic!("the cloth follows the eye"),
     };
-    assert!(moved.covers(&there) && !moved.covers(&here));
+    assert!(covers(&moved, &there) && !covers(&moved, &here));
     if let Some(taken) = before.zip(peak()).map(|(before, after)| after - before) {
         println!("looking: {} KiB", taken >> 10);
         // All blocks would be sixteen times the packed size.

@@ -10,14 +10,14 @@ use pickglass::design::{
     Design, Draft, Family, Fill, Filled, Lifting, Sett, Shed, Srgb, Structure, Ties, Yarn, YarnId,
     YarnMaps,
 };
+use pickglass::engine::{
+    FirstSight, Heading, LightChoice, SightTables, Still, StillRequest, Stop, prepare, render,
+};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::plan::{EffectBase, EffectChoice, Settings};
 use pickglass::print::{self, PdfOptions};
-use pickglass::scene::{LightRig, Sky, View};
-use pickglass::still::{
-    FirstSight, Heading, LightChoice, SightTables, Still, StillRequest, Stop, prepare, render,
-};
+use pickglass::scene::{LightRig, Pose, Sky, View};
 
 const SIDE: u32 = 64;
 
@@ -114,15 +114,15 @@ fn a_turned_camera_looks_along_the_same_rays() {
 #[test]
 fn the_light_stays_with_the_viewer() {
     let rig = LightRig::sun(135, 45).unwrap();
-    let turned = rig.turned();
-    assert_eq!(turned.turned(), rig);
+    let turned = rig.on(Pose::TURNED);
+    assert_eq!(turned.on(Pose::TURNED), rig);
     for (there, here) in rig.suns.iter().zip(&turned.suns) {
         let [a, b] = [there.towards, here.towards];
         assert!((a + b).truncate().length() < 1e-6 && (a.z - b.z).abs() < 1e-6);
     }
     // Turned over and turned: in the end about the x axis.
     assert_eq!(
-        rig.turned_over().turned().sky_turn(),
+        rig.on(Pose::BACK).on(Pose::TURNED).sky_turn(),
         Vec3::new(1.0, -1.0, -1.0)
     );
     assert!(!matches!(rig.sky, Sky::Dark));

@@ -9,11 +9,11 @@ use glam::{DVec3, Vec3};
 use pickglass::design::{
     Design, Fill, Regions, SourceImage, Structure, WeavePattern, delta_e_00, lab, weave,
 };
+use pickglass::engine::{self, StillRequest, Stop};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::photo;
 use pickglass::job::Job;
 use pickglass::posterise::{PosteriseSettings, Posterised, posterise};
-use pickglass::still::{self, StillRequest, Stop};
 
 /// ΔE₀₀ allowed between a region's rendered average and its expected colour.
 const ALLOWED: f64 = 4.0;
@@ -81,8 +81,8 @@ fn shown(design: &Design) -> Shown {
     request.settings.showing.denoise = false;
     let job = Job::new();
     let design = Arc::new(design.clone());
-    let cloth = still::prepare(&design, &request, &ExemplarStore::user(), &job).unwrap();
-    let still = still::render(&cloth, &request, &job, &mut |_| {}).unwrap();
+    let cloth = engine::prepare(&design, &request, &ExemplarStore::user(), &job).unwrap();
+    let still = engine::render(&cloth, &request, &job, &mut |_| {}).unwrap();
     assert_eq!(still.report.invalid_samples, 0);
     // The colour of what is covered, as the picture's file holds it.
     let pixels = still.film.pixels().iter();

@@ -239,11 +239,7 @@ fn presets_expose_a_white_diffuser_to_one() {
     for preset in PRESET_NAMES {
         let lights = LightRig::preset(preset).expect("a preset");
         for view in [View::Face, View::Back] {
-            let lights = if view.turns_over() {
-                lights.turned_over()
-            } else {
-                lights.clone()
-            };
+            let lights = lights.on(view.pose(false));
             let settings = RenderSettings {
                 spp: 400,
                 backing: Backing::White,

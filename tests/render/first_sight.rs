@@ -7,13 +7,15 @@ use crate::picture_likeness::{Looked, mean_delta_e, ssim};
 use pickglass::design::{
     Design, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
+use pickglass::engine::{
+    Engine, FirstSight, LightChoice, Shot, SightTables, StillRequest, Stop, prepare,
+};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::plan::Settings;
+use pickglass::plan::{Settings, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
 use pickglass::scene::View;
-use pickglass::still::{Engine, FirstSight, LightChoice, SightTables, StillRequest, Stop, prepare};
 
 fn design(name: &str) -> Arc<Design> {
     Arc::new(presets::design(name).unwrap().unwrap())
@@ -37,10 +39,11 @@ fn request(view: View, light: &str) -> StillRequest {
 /// The last picture of an engine. Where `PICKGLASS_PICTURES` names a folder, it is kept.
 fn picture(engine: &dyn Engine, request: &StillRequest, name: &str) -> Vec<u8> {
     let mut rgba = Vec::new();
+    let shot = Shot::new(request, request.plan(Subject::Cloth).unwrap()).unwrap();
     engine
-        .draw(request, &Job::new(), &mut |pass| {
-            rgba = pass.rgba().into_owned();
-            if engine.name() == "first sight" {
+        .expose(&shot, &Job::new(), &mut |pass| {
+            rgba = pass.rgba();
+            if engine.name() == "sight" {
                 println!("{name}: first sight in {:.1} ms", pass.seconds * 1e3);
             }
         })

@@ -4,15 +4,16 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use pickglass::cloth::{Followed, PreparedCloth};
 use pickglass::design::{
     Design, Family, Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps,
 };
+use pickglass::engine::{StillRequest, follow, prepare};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::plan::Settings;
 use pickglass::random::Random;
 use pickglass::render::Voxel;
-use pickglass::still::{Followed, PreparedCloth, StillRequest, prepare};
 
 const SIZE: u32 = 24;
 
@@ -51,10 +52,7 @@ fn made(design: &Arc<Design>) -> PreparedCloth {
 /// The cloth after an edit, and whether it had to build exemplars first.
 fn followed(cloth: &PreparedCloth, design: &Arc<Design>) -> Option<(PreparedCloth, bool)> {
     let drawdown = Arc::new(design.weave());
-    match cloth
-        .follow(design, &drawdown, &request(), &Job::new())
-        .unwrap()?
-    {
+    match follow(cloth, design, &drawdown, &request(), &Job::new()).unwrap()? {
         Followed::Ready(cloth) => Some((cloth, false)),
         Followed::Unfinished(cloth) => Some((
             cloth.complete(&ExemplarStore::user(), &Job::new()).unwrap(),
@@ -149,8 +147,7 @@ fn other_exemplars_mean_making_anew() {
         ..StillRequest::default()
     };
     assert!(
-        cloth
-            .follow(&same, &drawdown, &finer, &Job::new())
+        follow(&cloth, &same, &drawdown, &finer, &Job::new())
             .unwrap()
             .is_none()
     );

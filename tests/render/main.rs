@@ -6,6 +6,7 @@ mod picture_likeness;
 mod render_scenes;
 
 mod denoise;
+mod engines;
 mod film;
 mod first_sight;
 mod follow;

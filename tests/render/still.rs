@@ -26,10 +26,9 @@ fn every_view_and_light_gives_a_sound_picture() {
     for (k, view) in View::ALL.iter().enumerate() {
         let camera = view.camera(target, bounds.max.x * 0.8, 96, 72);
         let preset = PRESET_NAMES[k % PRESET_NAMES.len()];
-        let mut lights = LightRig::preset(preset).expect("a preset");
-        if view.turns_over() {
-            lights = lights.turned_over();
-        }
+        let lights = LightRig::preset(preset)
+            .expect("a preset")
+            .on(view.pose(false));
         let settings = RenderSettings {
             spp: 8,
             ..RenderSettings::default()

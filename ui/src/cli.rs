@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use pickglass::design::{Family, Srgb};
 use pickglass::exemplar::COARSEST_LEVEL;
 use pickglass::render::Backing;
@@ -11,9 +11,10 @@ use pickglass::scene::{PRESET_NAMES, View};
 use crate::values::{self, PicturePath, SettArg, Size, Turned, VolumePath};
 use crate::window::Restarts;
 use pickglass::cloth::Region;
+use pickglass::engine::{Heading, LightChoice, RENDERERS, USUAL_SPP};
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::plan::EffectChoice;
-use pickglass::still::{Heading, LightChoice, USUAL_SPP};
+use pickglass::posterise::Fit;
 use pickglass::synthesis::Method;
 use pickglass::text::shell_word;
 
@@ -212,17 +213,6 @@ pub struct LoomArgs {
     pub loom: Option<String>,
 }
 
-/// How a picture is brought to the panel's shape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum FitArg {
-    /// Fill the panel and cut off what stands over
-    Crop,
-    /// The whole picture, with white around it
-    Pad,
-    /// Stretch the picture
-    Stretch,
-}
-
 #[derive(Debug, Args)]
 pub struct PosterizeArgs {
     /// A picture: PNG, JPEG, BMP, TIFF or WebP
@@ -246,8 +236,8 @@ pub struct PosterizeArgs {
     #[arg(long, value_name = "N", value_parser = values::per_inch)]
     pub ppi: Option<f64>,
     /// How the picture is brought to the panel's shape
-    #[arg(long, value_enum, default_value_t = FitArg::Crop)]
-    pub fit: FitArg,
+    #[arg(long, default_value_t = Fit::Crop, value_parser = values::named::<Fit>())]
+    pub fit: Fit,
     /// Dither between the colours
     #[arg(long)]
     pub dither: bool,
@@ -299,17 +289,12 @@ pub struct SynthesizeArgs {
     pub json: bool,
 }
 
-/// What draws the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum RendererArg {
-    /// The best this build and this machine have
-    Auto,
-    /// The path tracer on the processor
-    Cpu,
-    /// The path tracer on a graphics card
-    Gpu,
-    /// Slices for zoomed-out views
-    Lumislice,
+/// The engines that there are, for the help.
+fn renderers() -> String {
+    let rows = RENDERERS.iter();
+    let rows = rows.map(|row| format!("{} ({})", row.name, row.about));
+    let rows: Vec<String> = rows.collect();
+    format!("What draws the picture: auto, {}", rows.join(", "))
 }
 
 #[derive(Debug, Args)]
@@ -360,9 +345,8 @@ pub struct StillArgs {
     /// What lies behind the cloth [default: self; none behind a volume]
     #[arg(long, value_parser = values::named::<Backing>())]
     pub backing: Option<Backing>,
-    /// What draws the picture
-    #[arg(long, value_enum, default_value_t = RendererArg::Auto)]
-    pub renderer: RendererArg,
+    #[arg(long, value_name = "NAME", default_value = "auto", help = renderers())]
+    pub renderer: String,
     /// auto, all or none, then +name and -name, separated by commas
     #[arg(long, value_name = "auto|all|none|±name", default_value = "auto", allow_hyphen_values = true, value_parser = values::effects)]
     pub effects: EffectChoice,

@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use anyhow::bail;
+use pickglass::engine::{Renderer, StillRequest};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::jc5;
 use pickglass::plan::{Effect, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
-use pickglass::still::StillRequest;
 
 use crate::cli::{ConvertArgs, ImageArgs, StillArgs};
 use crate::opened::head;
@@ -137,8 +137,29 @@ pub fn of_volume(args: &StillArgs) -> anyhow::Result<()> {
 ///
 /// # Errors
 /// One line that names the first of them and why.
-pub fn in_still(args: &StillArgs, request: &StillRequest, subject: Subject) -> anyhow::Result<()> {
-    let plan = request.plan(subject)?;
+pub fn in_still(
+    args: &StillArgs,
+    request: &StillRequest,
+    renderer: &Renderer,
+    subject: Subject,
+) -> anyhow::Result<()> {
+    renderer.check(subject)?;
+    let name = renderer.name;
+    let stops = [
+        ("--spp", args.spp.is_some()),
+        ("--seconds", args.seconds.is_some()),
+        ("--error", args.error.is_some()),
+    ];
+    let stop = stops.into_iter().find(|(_, given)| *given);
+    if let (false, Some((flag, _))) = (renderer.refines, stop) {
+        bail!("{flag}: the renderer {name} has no paths and ends at once: leave it out");
+    }
+    let mut named = args.effects.changes.iter();
+    if let Some((effect, on)) = named.find(|(effect, _)| !renderer.effects.contains(effect)) {
+        let sign = if *on { '+' } else { '-' };
+        bail!("--effects {sign}{effect}: the renderer {name} leaves no choice of it: leave it out");
+    }
+    let plan = renderer.plan(request, subject)?;
     let mut before: Vec<&str> = Vec::new();
     for turned in &args.dials {
         let name = turned.dial.name;
@@ -146,6 +167,12 @@ pub fn in_still(args: &StillArgs, request: &StillRequest, subject: Subject) -> a
             bail!("--set {name}: it is set twice: leave one of them out");
         }
         before.push(name);
+        if !(renderer.dials)(turned.dial) {
+            bail!(
+                "--set {name}: it changes nothing of the renderer {}: leave it out",
+                renderer.name
+            );
+        }
         let off = |effect: &Effect| !plan.on(*effect);
         if let Some(effect) = turned.dial.effect.filter(off) {
             bail!("--set {name}: the effect {effect} is left out: leave one of the two out");

@@ -13,7 +13,7 @@ use pickglass::plan::{self, Dial, Effect, EffectBase, EffectChoice, Settings};
 use pickglass::scene::PRESET_NAMES;
 use strum::VariantArray;
 
-use pickglass::still::{Heading, LightChoice};
+use pickglass::engine::{Heading, LightChoice};
 
 /// Threads per cm, along both directions.
 #[derive(Debug, Clone, Copy, PartialEq)]

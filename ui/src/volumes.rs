@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use pickglass::cloth::{ClothWindow, Part, Region};
+use pickglass::cloth::{ClothWindow, Part, PreparedCloth, Region};
 use pickglass::design::Design;
+use pickglass::engine::{self, StillError, StillRequest};
 use pickglass::formats::volume::{Attachment, Plan, VolumeFormat, bytes_in_words};
 use pickglass::formats::yarns::about_bytes;
-use pickglass::still::{self, PreparedCloth, StillError, StillRequest};
 use pickglass::volume::source::{Frame, VoxelSource};
 use pickglass::yarn::tubes::{self, TubesError, YarnTube};
 
@@ -66,7 +66,7 @@ fn scene_beside(
         height: height as u32,
         ..request.clone()
     };
-    still::scene_files(path, frame, &request)
+    engine::scene_files(path, frame, &request)
 }
 
 /// What writing voxels comes to.

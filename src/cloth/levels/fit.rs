@@ -483,19 +483,25 @@ mod tests {
     use super::super::gain::{Gain, first_factors};
     use super::super::series::OWN;
     use super::*;
+    use crate::cloth::{self, ClothSettings, PreparedCloth, Region};
     use crate::exemplar::ExemplarStore;
-    use crate::plan::Settings;
     use crate::presets;
-    use crate::still::{self, PreparedCloth, StillRequest};
 
     /// The cloth of a preset at a level.
     fn prepared(name: &str, level: u32) -> PreparedCloth {
         let design = Arc::new(presets::design(name).unwrap().unwrap());
-        let request = StillRequest {
-            settings: Settings::default().at_level(level),
-            ..StillRequest::default()
+        let settings = ClothSettings {
+            level,
+            ..ClothSettings::default()
         };
-        still::prepare(&design, &request, &ExemplarStore::user(), &Job::new()).unwrap()
+        let repeat = Region {
+            end: 0,
+            pick: 0,
+            ends: design.ends(),
+            picks: design.picks(),
+        };
+        let (store, job) = (ExemplarStore::user(), Job::new());
+        cloth::prepare(&design, &settings, &repeat.extent(), &store, &job).unwrap()
     }
 
     #[test]

@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use pickglass::design::{Design, Structure, WeavePattern};
+use pickglass::engine::{StillRequest, usual_width_mm};
 use pickglass::film::tone::decode_srgb;
 use pickglass::presets;
 use pickglass::render::Backing;
-use pickglass::still::{StillRequest, usual_width_mm};
 
 /// Size of the pictures.
 pub const SIZE: [u32; 2] = [320, 240];

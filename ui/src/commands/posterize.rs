@@ -7,11 +7,11 @@ use std::time::Instant;
 use pickglass::atomic;
 use pickglass::design::{Structure, Yarn, YarnId, YarnMap};
 use pickglass::formats::{LoadOptions, load, output, photo, ron};
-use pickglass::posterise::{Fit, PosteriseSettings, Posterised, posterise};
+use pickglass::posterise::{PosteriseSettings, Posterised, posterise};
 use serde_json::{Value, json};
 
 use super::note_warnings;
-use crate::cli::{FitArg, PosterizeArgs};
+use crate::cli::PosterizeArgs;
 use crate::out::{self, Progress};
 
 /// Inches are what picture and loom people count threads by.
@@ -68,11 +68,7 @@ fn settings(args: &PosterizeArgs) -> PosteriseSettings {
         picks: args.picks,
         ends_per_cm: (args.epi / CM_PER_INCH) as f32,
         picks_per_cm: (args.ppi.unwrap_or(args.epi) / CM_PER_INCH) as f32,
-        fit: match args.fit {
-            FitArg::Crop => Fit::Crop,
-            FitArg::Pad => Fit::Pad,
-            FitArg::Stretch => Fit::Stretch,
-        },
+        fit: args.fit,
         dither: args.dither,
         // Dithering is made of specks.
         speck: args

@@ -6,19 +6,21 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use super::{note_warnings, seconds_json};
-use crate::cli::{RendererArg, StillArgs};
+use crate::cli::StillArgs;
 use crate::idle;
 use crate::interrupt::Interrupt;
 use crate::late::Late;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
+use pickglass::engine::{
+    self, ALL_COLOURWAYS, Pass, Renderer, StillError, StillReport, StillRequest, Stop,
+};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::output;
 use pickglass::formats::volume::{self, VolumeFormat};
 use pickglass::job::Job;
 use pickglass::plan::{Settings, Subject};
 use pickglass::render::Backing;
-use pickglass::still::{self, ALL_COLOURWAYS, Pass, StillError, StillReport, StillRequest, Stop};
 use pickglass::text::shell_word;
 
 /// Longer than anybody waits: no end at all.
@@ -26,7 +28,7 @@ const LONGEST_SECONDS: f64 = 1e9;
 
 /// Makes the picture; the program began at `begun`.
 pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
-    refuse_absent_renderers(args.renderer)?;
+    let renderer = engine::renderer(&args.renderer)?;
     let path = &args.output.0;
     let volume = Path::new(&args.design);
     let is_volume = VolumeFormat::opened(volume).is_some();
@@ -41,10 +43,12 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     if is_volume {
         idle::of_volume(args)?;
         let request = request(args, Backing::None)?;
-        idle::in_still(args, &request, Subject::Voxels)?;
+        idle::in_still(args, &request, renderer, Subject::Voxels)?;
         let work = Work::begin(&request.stop, begun);
         let volume = (volume, args.voxel);
-        let made = still::render_grid(volume, &request, &work.job, &mut |pass| work.pass(pass));
+        let made = engine::render_grid(volume, &request, renderer, &work.job, &mut |pass| {
+            work.pass(pass);
+        });
         let (still, warnings) = work.ended(made)?;
         note_warnings(&warnings);
         let still = still.made_from(source(args));
@@ -60,11 +64,11 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     let opened = Opened::argument(&args.design, &args.sett, &args.image)?;
     note_warnings(&opened.warnings);
     let request = request(args, Backing::Itself)?;
-    idle::in_still(args, &request, Subject::Cloth)?;
+    idle::in_still(args, &request, renderer, Subject::Cloth)?;
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
-        return sheet(args, &opened, &request, begun);
+        return sheet(args, &opened, (&request, renderer), begun);
     }
-    let made = render_to(&opened, &request, path, begun, source(args))?;
+    let made = render_to(&opened, (&request, renderer), path, begun, source(args))?;
     tell(&made.0, path, made.1, args.json)
 }
 
@@ -135,11 +139,11 @@ impl Work {
 fn sheet(
     args: &StillArgs,
     opened: &Opened,
-    request: &StillRequest,
+    (request, renderer): (&StillRequest, &Renderer),
     begun: Instant,
 ) -> anyhow::Result<()> {
     let path = &args.output.0;
-    still::png_ending(path)?;
+    engine::png_ending(path)?;
     let work = Work::begin(&request.stop, begun);
     let mut show = |index: usize, count: usize, pass: &Pass<'_>| {
         work.pass(pass);
@@ -150,7 +154,14 @@ fn sheet(
         ));
     };
     let store = ExemplarStore::user();
-    let sheet = still::render_sheet(&opened.design, request, &store, &work.job, &mut show);
+    let sheet = engine::render_sheet(
+        &opened.design,
+        request,
+        renderer,
+        &store,
+        &work.job,
+        &mut show,
+    );
     let sheet = work.ended(sheet)?.made_from(source(args));
     sheet.save(path)?;
     note_warnings(&sheet.report.warnings);
@@ -178,13 +189,13 @@ fn sheet(
 /// interrupt ended it.
 pub fn render_to(
     opened: &Opened,
-    request: &StillRequest,
+    (request, renderer): (&StillRequest, &Renderer),
     path: &Path,
     begun: Instant,
     source: String,
 ) -> anyhow::Result<(StillReport, bool)> {
     let work = Work::begin(&request.stop, begun);
-    let still = still::render_still(&opened.design, request, &work.job, &mut |pass| {
+    let still = engine::render_still(&opened.design, request, renderer, &work.job, &mut |pass| {
         work.pass(pass);
     });
     let still = work.ended(still)?.made_from(source);
@@ -258,15 +269,6 @@ fn report_json(report: &StillReport, interrupted: bool) -> Value {
         "interrupted": interrupted,
         "warnings": report.warnings,
     })
-}
-
-fn refuse_absent_renderers(renderer: RendererArg) -> anyhow::Result<()> {
-    let name = match renderer {
-        RendererArg::Auto | RendererArg::Cpu => return Ok(()),
-        RendererArg::Gpu => "gpu",
-        RendererArg::Lumislice => "lumislice",
-    };
-    anyhow::bail!("--renderer {name}: this build has no such renderer: use auto or cpu")
 }
 
 /// What is looked at and how it is read, as words of a command line.

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use pickglass::cloth::{Part, Region};
+use pickglass::cloth::{self, Part, Region};
+use pickglass::engine::{self, StillRequest};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::volume::{self, bytes_in_words};
 use pickglass::formats::{output, yarns};
-use pickglass::plan::Settings;
-use pickglass::still::{self, StillRequest};
+use pickglass::plan::{Settings, Subject};
 use pickglass::volume::source::VoxelSource;
 use serde_json::{Value, json};
 
@@ -38,12 +38,13 @@ pub fn run(args: &VolumeArgs) -> anyhow::Result<()> {
         settings: Settings::default().at_level(args.level),
         ..StillRequest::default()
     };
-    note_warnings(&still::light_warnings(&request)?);
+    note_warnings(&engine::light_warnings(&request)?);
     let progress = Progress::new();
     let job = progress.job();
     Interrupt::watch(&job);
-    let there = request.clone().over(&opened.design, &region);
-    let prepared = still::prepare(&opened.design, &there, &ExemplarStore::user(), &job);
+    let settings = request.plan(Subject::Cloth)?.cloth;
+    let store = ExemplarStore::user();
+    let prepared = cloth::prepare(&opened.design, &settings, &region.extent(), &store, &job);
     progress.finish();
     let prepared = prepared?;
     let part = if args.face { Part::Face } else { Part::Whole };

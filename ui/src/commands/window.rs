@@ -12,9 +12,9 @@ use crate::idle;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
 use crate::window::{self, NoWindow, Start};
+use pickglass::engine::{StillRequest, Stop, reference};
 use pickglass::formats::output;
 use pickglass::render::Backing;
-use pickglass::still::{StillRequest, Stop};
 use pickglass::text::shell_word;
 
 /// Where the picture goes when no window can open.
@@ -85,6 +85,12 @@ fn without_window(opened: &Opened, reason: &str, source: String, json: bool) -> 
     };
     let path = Path::new(FALLBACK_PICTURE);
     output::check(path, opened.path.as_deref())?;
-    let (report, interrupted) = still::render_to(opened, &request, path, Instant::now(), source)?;
+    let (report, interrupted) = still::render_to(
+        opened,
+        (&request, reference()),
+        path,
+        Instant::now(),
+        source,
+    )?;
     still::tell(&report, path, interrupted, json)
 }

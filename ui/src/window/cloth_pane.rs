@@ -14,7 +14,7 @@ use super::pace::Measured;
 use super::view::{ClothView, scale_bar};
 use super::worker::{Fibres, Picture};
 use crate::tokens::{self, Palette};
-use pickglass::still::StillRequest;
+use pickglass::engine::StillRequest;
 
 /// One notch of a wheel zooms by about this much.
 const ZOOM_A_POINT: f32 = 0.004;

@@ -13,7 +13,7 @@ use super::task::{Outcome, Running};
 use super::{dialog, typing};
 use crate::tokens::{self, Palette};
 use crate::values;
-use pickglass::still::{self, StillError, StillReport, StillRequest, Stop};
+use pickglass::engine::{self, StillError, StillReport, StillRequest, Stop};
 use pickglass::text::shell_word;
 
 /// What became of an export.
@@ -214,10 +214,11 @@ impl Export {
         let source = source.map(|path| shell_word(&path.display().to_string()).into_owned());
         let design = form.design;
         let work = Running::start(ctx, "export", move |job, teller| {
-            let rendered = still::render_still(&design, &still, job, &mut |pass| {
-                let (text, left) = refined(&stop, pass.spp, pass.seconds, pass.error);
-                teller.tell_left(text, left);
-            });
+            let rendered =
+                engine::render_still(&design, &still, engine::reference(), job, &mut |pass| {
+                    let (text, left) = refined(&stop, pass.spp, pass.seconds, pass.error);
+                    teller.tell_left(text, left);
+                });
             teller.tell("finishing: denoising and writing".to_owned());
             let rendered = rendered.map(|done| match source {
                 Some(source) => done.made_from(source),

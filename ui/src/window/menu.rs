@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use egui::containers::menu::MenuConfig;
 use egui::{Button, Grid, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
+use pickglass::engine::LightChoice;
 use pickglass::presets;
 use pickglass::scene::{PRESET_NAMES, View};
-use pickglass::still::LightChoice;
 use pickglass::text::visible;
 
 use super::cloth::sheet::Kind as SheetKind;

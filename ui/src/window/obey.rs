@@ -2,7 +2,7 @@
 
 use egui::ViewportCommand;
 use pickglass::edit::Edit;
-use pickglass::still::LightChoice;
+use pickglass::engine::LightChoice;
 
 use super::app::App;
 use super::asking::Next;

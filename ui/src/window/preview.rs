@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
 use pickglass::edit::Document;
+use pickglass::engine::{Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::plan::{EffectChoice, Settings};
 use pickglass::render::Backing;
 use pickglass::scene::View;
-use pickglass::still::{Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::text::visible;
 
 use super::action::Action;
@@ -251,7 +251,7 @@ impl Preview {
                 self.cloth_view = None;
             }
             Command::Fit => {
-                if !self.view.turns_over() {
+                if !self.view.pose(self.turned).back {
                     self.view = View::Face;
                 }
                 self.fit = true;
@@ -332,7 +332,7 @@ impl Preview {
             return;
         }
         let description = format!("Cloth of {}", visible(&document.design().name));
-        let straight = self.eye.is_none() && matches!(self.view, View::Face | View::Back);
+        let straight = self.is_straight();
         let marked = (self.marked.filter(|_| straight))
             .map(|(end, pick)| laid.near(view.centre_mm, end, pick));
         let response = self.pane.show(ui, &mut view, &description, marked);
@@ -381,8 +381,12 @@ impl Preview {
         ]);
     }
 
+    fn is_straight(&self) -> bool {
+        self.eye.is_none() && self.view.is_straight()
+    }
+
     fn turn_over(&mut self) {
-        let back = self.view.turns_over();
+        let back = self.view.pose(self.turned).back;
         self.view = if back { View::Face } else { View::Back };
         if let Some(view) = &mut self.cloth_view {
             view.mirrored = !back;
@@ -391,7 +395,7 @@ impl Preview {
 
     fn straighten(&mut self) {
         self.eye = None;
-        if !self.view.turns_over() {
+        if !self.view.pose(self.turned).back {
             self.view = View::Face;
         }
     }
@@ -411,8 +415,8 @@ impl Preview {
             lamp::show(ui, lamp_at, &mut self.light);
         }
         let says = Says {
-            back: self.view.turns_over(),
-            slanting: self.eye.is_some() || !matches!(self.view, View::Face | View::Back),
+            back: self.view.pose(self.turned).back,
+            slanting: !self.is_straight(),
             kept: self.compare.is_some(),
             near: self.in_use,
         };
@@ -442,7 +446,7 @@ impl Preview {
 
     fn initial_view(&self, pane: Rect, laid: &Laid) -> ClothView {
         let middle = laid.whole_mm().map(|mm| mm / 2.0);
-        let straight = matches!(self.view, View::Face | View::Back);
+        let straight = self.view.is_straight();
         let mut view = if self.fit {
             ClothView::fitting(pane, middle, laid.whole_mm())
         } else if straight {
@@ -451,7 +455,7 @@ impl Preview {
         } else {
             ClothView::across(pane, middle, usual_width_mm(self.view, &laid.design))
         };
-        view.mirrored = self.view.turns_over();
+        view.mirrored = self.view.pose(self.turned).back;
         view
     }
 

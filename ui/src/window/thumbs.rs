@@ -9,9 +9,9 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use pickglass::design::{Colouring, Design, SwatchWindow, WeavePattern, swatch};
 use pickglass::edit::recovery;
+use pickglass::engine::{FirstSight, SightTables, StillRequest, usual_width_mm};
 use pickglass::job::Job;
 use pickglass::scene::View;
-use pickglass::still::{Engine, FirstSight, SightTables, StillRequest, usual_width_mm};
 use pickglass::text::visible;
 
 use crate::opened::Opened;
@@ -225,14 +225,16 @@ fn woven(
         Arc::clone(&drawdown),
         Arc::clone(tables),
     );
-    let mut image = None;
-    let done = sight.draw(&request, &Job::new(), &mut |pass| {
-        let size = [pass.width as usize, pass.height as usize];
-        image = Some(ColorImage::from_rgba_unmultiplied(size, &pass.rgba()));
-    });
-    if let Err(error) = done {
-        log::warn!("{title}: its thumbnail stays a drawdown: {error}");
-    }
+    let image = match sight.look(&request, &Job::new()) {
+        Ok(seen) => Some(ColorImage::from_rgba_unmultiplied(
+            [PIXELS as usize; 2],
+            &seen.rgba,
+        )),
+        Err(error) => {
+            log::warn!("{title}: its thumbnail stays a drawdown: {error}");
+            None
+        }
+    };
     // Cloth of one colour may show no figure from afar: its drawdown says more then.
     let figure = spread(&swatch_of(&design, &drawdown));
     let image =

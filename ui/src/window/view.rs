@@ -5,6 +5,7 @@
 //! 180°, both run the other way.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
+use pickglass::scene::Pose;
 
 /// Closest and furthest look, mm of cloth a point of screen.
 const SCALE_RANGE: std::ops::RangeInclusive<f32> = 0.0002..=25.0;
@@ -52,8 +53,8 @@ impl ClothView {
 
     /// Which way x runs to the right and y upwards: +1 or −1.
     fn ways(&self) -> [f32; 2] {
-        let way = |back: bool| if back { -1.0 } else { 1.0 };
-        [way(self.mirrored != self.turned), way(self.turned)]
+        let (back, turned) = (self.mirrored, self.turned);
+        Pose { back, turned }.ways()
     }
 
     /// Where a point of the cloth lies on the screen.

@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{DragValue, RichText};
-use pickglass::cloth::{ClothWindow, Part, Region};
+use pickglass::cloth::{self, ClothWindow, Part, PreparedCloth, Region};
 use pickglass::design::Design;
+use pickglass::engine::{self, StillError, StillRequest};
 use pickglass::exemplar::{COARSEST_LEVEL, ExemplarStore};
 use pickglass::formats::output;
 use pickglass::formats::volume::{self, Attachment, VolumeFileError, bytes_in_words};
 use pickglass::formats::yarns::{self, YarnsError};
 use pickglass::job::Job;
-use pickglass::plan::Settings;
-use pickglass::still::{self, PreparedCloth, StillRequest};
+use pickglass::plan::{Settings, Subject};
+use pickglass::synthesis::Stretch;
 use pickglass::volume::source::VoxelSource;
 use pickglass::yarn::tubes::YarnTube;
 
@@ -365,13 +366,10 @@ fn plan(
     job: &Job,
 ) -> Result<((Made, String), Vec<PathBuf>), String> {
     // Of a very large design only the region is made into cloth.
-    let over = request.clone().over(design, &wanted.region());
+    let extent = wanted.region().extent();
     let cloth = match known {
-        Some(cloth) if cloth.covers(&over) => cloth,
-        _ => {
-            let prepared = still::prepare(design, &over, &ExemplarStore::user(), job);
-            Arc::new(prepared.map_err(|error| error.to_string())?)
-        }
+        Some(cloth) if cloth.covers(cloth.design(), &extent) => cloth,
+        _ => Arc::new(prepare(design, &request, &extent, job).map_err(|error| error.to_string())?),
     };
     let path = wanted.path()?;
     let (window, attached) = voxels(&cloth, wanted, &path, &request)?;
@@ -379,6 +377,19 @@ fn plan(
     let text = volumes::voxels_in_words(&plan, &window.frame());
     let files = plan.files.into_iter().map(|file| file.0).collect();
     Ok(((Made::Cloth(cloth), text), files))
+}
+
+/// Makes so many crossings of a design into cloth, as `request` has it.
+fn prepare(
+    design: &Arc<Design>,
+    request: &StillRequest,
+    extent: &Stretch,
+    job: &Job,
+) -> Result<PreparedCloth, StillError> {
+    let design = engine::coloured(design, request)?;
+    let settings = request.plan(Subject::Cloth)?.cloth;
+    let store = ExemplarStore::user();
+    Ok(cloth::prepare(&design, &settings, extent, &store, job)?)
 }
 
 fn plan_yarns(design: &Arc<Design>, wanted: &Wanted) -> Planned {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{
     ColorImage, CursorIcon, Rect, Sense, Stroke, TextureHandle, TextureOptions, pos2, vec2,
 };
-use pickglass::still::StillRequest;
+use pickglass::engine::StillRequest;
 
 use crate::tokens::{self, Palette};
 use crate::window::cloth_pane::draw_picture;

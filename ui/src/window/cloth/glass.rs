@@ -3,7 +3,7 @@
 
 use egui::epaint::{Mesh, Vertex};
 use egui::{Color32, Key, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2, vec2};
-use pickglass::still::StillRequest;
+use pickglass::engine::StillRequest;
 
 use crate::tokens::{self, Palette};
 use crate::window::view::{ClothView, scale_bar};

@@ -1,7 +1,7 @@
 //! The lamp: a small dome over the cloth on which one drags the light about.
 
 use egui::{Pos2, Rect, Sense, Stroke, vec2};
-use pickglass::still::{Heading, LightChoice};
+use pickglass::engine::{Heading, LightChoice};
 
 use crate::tokens::{self, Palette};
 use crate::window::focus;

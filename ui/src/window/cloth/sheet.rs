@@ -8,7 +8,7 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 use pickglass::edit::{Document, Edit};
-use pickglass::still::{Engine, FirstSight, SightTables, StillRequest};
+use pickglass::engine::{FirstSight, SightTables, StillRequest};
 
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
@@ -217,12 +217,9 @@ impl Sheet {
                 };
                 let (design, drawdown) = (Arc::clone(&design), Arc::clone(&drawdown));
                 let sight = FirstSight::new(design, drawdown, Arc::clone(&tables));
-                let mut image = None;
-                let drawn = sight.draw(&request, job, &mut |pass| {
-                    let size = [pass.width as usize, pass.height as usize];
-                    image = Some(ColorImage::from_rgba_unmultiplied(size, &pass.rgba()));
-                });
-                drawn.ok().and(image)
+                let seen = sight.look(&request, job).ok()?;
+                let size = [request.width, request.height].map(|side| side as usize);
+                Some(ColorImage::from_rgba_unmultiplied(size, &seen.rgba))
             };
             wanted.places.iter().map(one).collect()
         });

@@ -6,10 +6,10 @@ use egui::{Key, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pickglass::edit::Document;
+use pickglass::engine::LightChoice;
 use pickglass::exemplar::ExemplarStore;
 use pickglass::plan::{EffectBase, EffectChoice, Settings};
 use pickglass::presets;
-use pickglass::still::LightChoice;
 
 use crate::window::action::Action;
 use crate::window::preview::{Preview, PreviewSettings};
@@ -179,7 +179,7 @@ fn the_cloth_is_turned_over_and_the_lamp_moved() {
     shown(&mut harness);
     harness.get_by_label("See back").click();
     wait(&mut harness, "the back", |preview| {
-        preview.view.turns_over()
+        preview.view.pose(false).back
     });
     harness.run_steps(2);
     harness.get_by_label_contains("Lamp: ").focus();

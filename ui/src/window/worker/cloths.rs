@@ -11,10 +11,9 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use pickglass::cloth::YarnClasses;
+use pickglass::cloth::{Followed, PreparedCloth, UnfinishedCloth, YarnClasses};
+use pickglass::engine::{self, StillError, StillRequest};
 use pickglass::job::Job;
-use pickglass::scene::View;
-use pickglass::still::{self, Followed, PreparedCloth, StillError, StillRequest, UnfinishedCloth};
 
 use super::{Building, Desk, Fibres, Phase, PreviewRequest};
 
@@ -51,7 +50,7 @@ enum Wanted {
 /// Whether first sight shows what a picture is of better than coarse voxels do: these
 /// blur yarns into each other. First sight knows nothing of the slant of a view.
 pub(super) fn first_sight_serves(still: &StillRequest) -> bool {
-    still.eye.is_none() && matches!(still.view, View::Face | View::Back)
+    still.is_straight()
 }
 
 /// The best cloth at hand for a request, and what it is of; `None` where first sight serves
@@ -62,14 +61,22 @@ pub(super) fn cloth_of(
     job: &Job,
     coarse: &mut Option<Kept>,
 ) -> Result<Option<(Arc<PreparedCloth>, Fibres)>, StillError> {
-    still::check_view(&request.design, &request.still)?;
+    engine::check_view(&request.design, &request.still)?;
     let full = desk.lock().full.clone();
     let wanted = match full {
-        Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&request.still) => {
+        Some((made_for, cloth))
+            if made_for.same_cloth(request) && engine::covers(&cloth, &request.still) =>
+        {
             return Ok(Some((cloth, Fibres::Full)));
         }
         Some((made_for, cloth)) if made_for.same_settings(request) => {
-            match cloth.follow(&request.design, &request.drawdown, &request.still, job)? {
+            match engine::follow(
+                &cloth,
+                &request.design,
+                &request.drawdown,
+                &request.still,
+                job,
+            )? {
                 Some(Followed::Ready(cloth)) => {
                     let cloth = Arc::new(cloth);
                     desk.lock().full = Some((request.clone(), Arc::clone(&cloth)));
@@ -99,11 +106,13 @@ fn coarse_cloth(
     let mut still = request.still.clone();
     still.settings.cloth.level = COARSE_LEVEL;
     let followed = match coarse {
-        Some((made_for, cloth)) if made_for.same_cloth(request) && cloth.covers(&still) => {
+        Some((made_for, cloth))
+            if made_for.same_cloth(request) && engine::covers(cloth, &still) =>
+        {
             return Ok(Arc::clone(cloth));
         }
         Some((made_for, cloth)) if made_for.same_settings(request) => {
-            cloth.follow(&request.design, &request.drawdown, &still, job)?
+            engine::follow(cloth, &request.design, &request.drawdown, &still, job)?
         }
         _ => None,
     };
@@ -114,7 +123,7 @@ fn coarse_cloth(
             desk.set_phase(Phase::Preparing);
             *coarse = None;
             let (design, drawdown) = (&request.design, &request.drawdown);
-            still::prepare_woven(design, drawdown, &still, &desk.store, job)?
+            engine::prepare_woven(design, drawdown, &still, &desk.store, job)?
         }
     };
     let cloth = Arc::new(cloth);
@@ -148,10 +157,10 @@ fn build(desk: &Arc<Desk>, request: &PreviewRequest, wanted: Wanted) {
             let (desk, request) = (thread_desk, thread_request);
             let built = catch_unwind(AssertUnwindSafe(|| {
                 super::threads::behind(|| match wanted {
-                    Wanted::Exemplars(cloth) => cloth.complete(&desk.store, &job),
+                    Wanted::Exemplars(cloth) => Ok(cloth.complete(&desk.store, &job)?),
                     Wanted::All => {
                         let (design, drawdown) = (&request.design, &request.drawdown);
-                        still::prepare_woven(design, drawdown, &request.still, &desk.store, &job)
+                        engine::prepare_woven(design, drawdown, &request.still, &desk.store, &job)
                     }
                 })
             }));

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pickglass::design::WeavePattern;
-use pickglass::job::Job;
-use pickglass::still::{
-    FirstSight, PreparedCloth, SightTables, Sighted, Standing, StillError, StillRequest, Stop,
-    place_on, render,
+use pickglass::engine::{
+    Engine, FirstSight, Shot, SightTables, Sighted, Standing, StillError, StillRequest, Stop, draw,
+    place_on,
 };
+use pickglass::job::Job;
+use pickglass::plan::Subject;
 
 use super::{Aim, Desk, Fibres, LONGEST, Picture, PreviewRequest};
 
@@ -174,7 +175,7 @@ impl Drawing<'_> {
     /// adds to the picture that stands.
     pub fn trace(
         &self,
-        cloth: &PreparedCloth,
+        engine: &dyn Engine,
         fibres: Fibres,
         level: u32,
         stop: Stop,
@@ -190,7 +191,8 @@ impl Drawing<'_> {
         let (begun, mut hidden, mut long) = (Instant::now(), Duration::ZERO, false);
         let (mut last_shown, mut failed, exposure) = (0, None, still.exposure_ev);
         let stands = screen.as_ref().map(|screen| screen.standing.clone());
-        let drawn = render(cloth, &still, self.job, &mut |pass| {
+        let shot = Shot::new(&still, still.plan(Subject::Cloth)?)?;
+        let drawn = draw(engine, &self.request.design, &shot, self.job, &mut |pass| {
             outcome = Traced {
                 pass_seconds: pass.seconds / f64::from(pass.spp.max(1)),
                 spp: pass.spp,
@@ -208,13 +210,13 @@ impl Drawing<'_> {
                 return;
             }
             let showing = Instant::now();
-            let improved = stands.as_ref().zip(pass.film()).and_then(|(stands, film)| {
+            let improved = stands.as_ref().and_then(|stands| {
                 let clean = if level == 0 {
                     pass.clean(self.job)
                 } else {
                     None
                 };
-                stands.improved(film, clean.as_deref(), exposure)
+                stands.improved(pass.film, clean.as_deref(), exposure)
             });
             if let Some(improved) = improved {
                 self.show(&improved, &outcome, level == 0, fibres);

@@ -19,9 +19,9 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use pickglass::design::{Design, WeavePattern};
+use pickglass::engine::{SightTables, StillError, StillRequest, Stop, usual_width_mm};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::{Cancelled, Job};
-use pickglass::still::{SightTables, StillError, StillRequest, Stop, usual_width_mm};
 
 use cloths::{Builder, Kept, cloth_of, first_sight_serves};
 use drawing::{Drawing, OnScreen, PATIENCE};
@@ -496,7 +496,7 @@ fn serve(
                 spp: Some(COARSE_SAMPLES),
                 ..Stop::default()
             };
-            let traced = drawing.trace(&cloth, fibres, level, stop, screen)?;
+            let traced = drawing.trace(&*cloth, fibres, level, stop, screen)?;
             if level == coarsest {
                 first.learn(traced.pass_seconds * 1e3);
             }
@@ -506,7 +506,7 @@ fn serve(
             error: Some(good),
             ..Stop::default()
         };
-        let traced = drawing.trace(&cloth, fibres, 0, stop, screen)?;
+        let traced = drawing.trace(&*cloth, fibres, 0, stop, screen)?;
         if coarsest == 0 && first.0 == 0 {
             first.learn(traced.pass_seconds * 1e3);
         }

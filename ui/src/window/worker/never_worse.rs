@@ -5,10 +5,11 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::time::Instant;
 
 use glam::Vec3;
+use pickglass::cloth::PreparedCloth;
 use pickglass::design::{delta_e_00, lab};
+use pickglass::engine::{SightTables, StillRequest, Stop, prepare_woven};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::still::{PreparedCloth, SightTables, StillRequest, Stop, prepare_woven};
 
 use super::drawing::{Drawing, OnScreen};
 use super::{
@@ -102,14 +103,14 @@ fn films(
     (still.width, still.height) = (still.width >> level, still.height >> level);
     still.stop.spp = Some(spp);
     let mut films = Vec::new();
-    pickglass::still::render(cloth, &still, &Job::new(), &mut |pass| {
+    pickglass::engine::render(cloth, &still, &Job::new(), &mut |pass| {
         let rgba = pass.rgba();
         let pixel = |at: usize| {
             let (x, y) = (
                 (at % SIZE[0] as usize) >> level,
                 (at / SIZE[0] as usize) >> level,
             );
-            let from = (y * pass.width as usize + x) * 4;
+            let from = (y * pass.film.width() as usize + x) * 4;
             [0, 1, 2, 3].map(|channel| f32::from(rgba[from + channel]) / 255.0)
         };
         let pixels: Vec<[f32; 4]> = (0..(SIZE[0] * SIZE[1]) as usize).map(pixel).collect();

@@ -35,7 +35,10 @@ fn options(request: &StillRequest, report: &StillReport) -> String {
     let mut words = Vec::new();
     let mut say = |name: &str, value: String| words.push(format!("--{name} {value}"));
     say("size", format!("{}x{}", request.width, request.height));
-    say("spp", report.spp.to_string());
+    // Nothing else is known of how many there are where an engine has no paths.
+    if report.paths_per_second > 0.0 {
+        say("spp", report.spp.to_string());
+    }
     say("view", request.view.to_string());
     if let Some(eye) = request.eye {
         say("eye", eye.to_string());
@@ -51,6 +54,7 @@ fn options(request: &StillRequest, report: &StillReport) -> String {
         say("exposure", request.exposure_ev.to_string());
     }
     say("backing", request.backing.to_string());
+    say("renderer", report.renderer.clone());
     say("effects", effects(&request.effects));
     if let Some(colourway) = &request.colourway {
         say("colourway", shell_word(colourway).into_owned());
@@ -88,9 +92,9 @@ fn effects(choice: &EffectChoice) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Heading;
     use crate::plan::{Effect, EffectBase};
     use crate::render::Backing;
-    use crate::still::Heading;
 
     #[test]
     fn all_that_was_asked_for_is_said() {
@@ -115,13 +119,15 @@ mod tests {
         };
         request.settings.cloth.level = 2;
         let report = StillReport {
+            renderer: "cpu".to_owned(),
             spp: 12,
+            paths_per_second: 1.0,
             ..StillReport::default()
         };
         assert_eq!(
             options(&request, &report),
             "--size 64x48 --spp 12 --view face --eye 270,40 --mm 2.5 --centre -1,0.25 \
-             --light 'my light.exr' --backing self \
+             --light 'my light.exr' --backing self --renderer cpu \
              --effects none,+sky,-edge-fixing --colourway 'it'\\''s' --seed 0 --set level=2 \
              --turned"
         );

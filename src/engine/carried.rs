@@ -15,10 +15,11 @@ use std::ops::AddAssign;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::picture::byte;
+use super::exposure::byte;
 use crate::design::{Yarn, YarnId};
 use crate::exemplar::Pair;
 use crate::film::tone::{decode_srgb, encode_srgb};
+use crate::scene::Pose;
 use crate::synthesis::KEYS;
 
 /// Cells along a crossing's side in which what was seen is told apart.
@@ -91,7 +92,7 @@ pub struct Sighted {
     pub(super) places: Vec<Place>,
     pub(super) yarns: Vec<Yarn>,
     /// Whether the back is seen.
-    pub(super) back: bool,
+    pub(super) pose: Pose,
     /// The pairs of yarns that the places name by their number.
     pub(super) pairs: Vec<Pair>,
 }
@@ -154,7 +155,7 @@ impl Sighted {
                         traced: light.of(&traced[range.clone()]),
                         sight: light.of(&self.rgba[range]),
                     };
-                    let warp_up = (place.key & 1 == 1) != after.back;
+                    let warp_up = after.pose.sees_warp(place.key & 1 == 1);
                     let upper = if warp_up { place.warp } else { place.weft };
                     if place.cell_index().is_some() && is_kept(upper) {
                         seen = known.sight.lerp(seen, THROUGH);
@@ -474,7 +475,7 @@ mod tests {
                 })
                 .collect(),
             yarns: vec![Yarn::new("yarn", Family::Cotton, colour)],
-            back: false,
+            pose: Pose::FACE,
             pairs: vec![Pair {
                 warp: YarnRecipe::family(Family::Cotton, 0.3),
                 weft: YarnRecipe::family(Family::Cotton, 0.3),
@@ -543,7 +544,7 @@ mod tests {
         let green = |key: u8, back: bool| {
             let before = sight(key, Srgb(200, 200, 200), [200, 200, 200, 255]);
             let mut after = sight(key, Srgb(200, 0, 0), [200, 100, 100, 255]);
-            after.back = back;
+            after.pose.back = back;
             before.carried_to(&after, &traced).unwrap().rgba[1]
         };
         // Key 1: the warp is up.

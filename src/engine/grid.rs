@@ -4,7 +4,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::picture::{Pass, Shot, Shown, Still, ask_for_picture, camera_at, lights};
+use super::exposure::Pass;
+use super::renderer::Renderer;
+use super::shot::{Shot, camera_at, lights};
+use super::still::{Shown, Still, develop};
+use super::tracer::trace;
 use super::{StillError, StillRequest, finishing};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
@@ -26,29 +30,25 @@ use crate::volume::source::Frame;
 pub fn render_grid(
     (path, voxel_mm): (&Path, Option<f64>),
     request: &StillRequest,
+    renderer: &Renderer,
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<(Still, Vec<String>), StillError> {
-    let plan = request.plan(Subject::Voxels)?;
+    renderer.check(Subject::Voxels)?;
+    let shot = Shot::new(request, renderer.plan(request, Subject::Voxels)?)?;
     let begun = Instant::now();
-    let taps = match plan.on(Effect::Tap) {
+    let taps = match shot.plan.on(Effect::Tap) {
         true => Taps::StochasticTrilinear,
         false => Taps::Nearest,
     };
-    ask_for_picture(request.width, request.height)?;
     let job = &finishing::bounded(request, job);
     let file = volume::read_scaled(path, taps, voxel_mm, job)?;
     let reading = ("reading".to_owned(), begun.elapsed().as_secs_f64());
-    let shot = Shot {
-        camera: camera_over(crate::render::Medium::bounds(&file.grid), request)?,
-        lights: lights(&request.light, request.view, request.turned)?,
-        plan,
-        request,
-    };
-    let outcome = shot.expose(&file.grid, job, on_pass)?;
+    let camera = camera_over(crate::render::Medium::bounds(&file.grid), request)?;
+    let exposure = trace(&file.grid, &camera, &shot, vec![reading], job, on_pass)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let shown = Shown::Volume(name.into_owned());
-    Ok((shot.develop(outcome, vec![reading], shown), file.warnings))
+    Ok((develop(&shot, exposure, shown), file.warnings))
 }
 
 /// The camera of a request over a box: its middle and its width, unless the request says.
@@ -69,7 +69,7 @@ pub fn scene_files(
     let settings = request.plan(Subject::Voxels)?.render;
     let scene = mitsuba::Scene {
         camera: &camera_over(frame.bounds(), request)?,
-        lights: &lights(&request.light, request.view, request.turned)?,
+        lights: &lights(&request.light, request.pose())?,
         max_order: settings.max_order,
         roulette_order: settings.roulette_order,
         sky: settings.sky,
@@ -82,5 +82,5 @@ pub fn scene_files(
 /// # Errors
 /// When the light is not usable.
 pub fn light_warnings(request: &StillRequest) -> Result<Vec<String>, StillError> {
-    Ok(lights(&request.light, request.view, request.turned)?.warnings)
+    Ok(lights(&request.light, request.pose())?.warnings)
 }

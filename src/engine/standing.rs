@@ -80,7 +80,7 @@ impl Standing {
         let steps: Vec<u8> = (0..=ENCODED)
             .map(|step| {
                 let root = step as f32 / ENCODED as f32;
-                super::picture::byte(encode_srgb(root * root))
+                super::exposure::byte(encode_srgb(root * root))
             })
             .collect();
         let mut rgba = Vec::with_capacity(self.light.pixels.len() * 4);
@@ -91,7 +91,7 @@ impl Standing {
                 let step = curve(value).sqrt() * ENCODED as f32;
                 steps[(step.round() as usize).min(ENCODED)]
             }));
-            rgba.push(super::picture::byte(alpha));
+            rgba.push(super::exposure::byte(alpha));
         }
         rgba
     }

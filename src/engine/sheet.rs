@@ -8,9 +8,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::again::Again;
-use super::picture::{Pass, SHOWN_BYTES, Still, ask_for_picture, lights, render_lit};
-use super::prepare::{PreparedCloth, prepare};
+use super::exposure::{Engine, Pass};
+use super::renderer::Renderer;
 use super::request::{StillReport, StillRequest};
+use super::shot::{SHOWN_BYTES, Shot};
+use super::still::{Still, draw};
 use super::{StillError, finishing, png_ending};
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
@@ -18,6 +20,7 @@ use crate::formats::png;
 use crate::job::Job;
 use crate::limits;
 use crate::memory;
+use crate::plan::Subject;
 
 /// The name that asks for a sheet of every colourway; no colourway is called that.
 pub const ALL_COLOURWAYS: &str = "all";
@@ -139,6 +142,7 @@ impl Layout {
 pub fn render_sheet(
     design: &Arc<Design>,
     request: &StillRequest,
+    renderer: &Renderer,
     store: &ExemplarStore,
     job: &Job,
     on_pass: &mut dyn FnMut(usize, usize, &Pass<'_>),
@@ -159,29 +163,29 @@ pub fn render_sheet(
         colourway: None,
         ..request.clone()
     };
-    ask_for_picture(width, height)?;
+    renderer.check(Subject::Cloth)?;
+    // What is wrong with the light is said before anything takes long.
+    let shot = Shot::new(&request, renderer.plan(&request, Subject::Cloth)?)?;
     ask_for_sheet(layout.size)?;
     let job = &finishing::bounded(&request, job);
-    // What is wrong with the light is said before anything takes long.
-    let lights = lights(&request.light, request.view, request.turned)?;
     let clear = [1.0, 1.0, 1.0, 0.0];
     let mut picture = crate::film::Picture {
         width: layout.size.0,
         height: layout.size.1,
         pixels: vec![clear; layout.size.0 as usize * layout.size.1 as usize],
     };
-    let mut cloth: Option<PreparedCloth> = None;
+    let mut engine: Option<Box<dyn Engine>> = None;
     let mut places = Vec::with_capacity(count);
     let mut report = StillReport::default();
     let mut metadata = png::Metadata::default();
     for (index, (name, design)) in designs.into_iter().enumerate() {
         let job = &share_of_time(job, count - index);
-        let recoloured = cloth.as_mut().is_some_and(|cloth| cloth.recolour(&design));
-        let ready = match cloth.take() {
+        let recoloured = (engine.as_mut()).is_some_and(|engine| engine.recolour(&design));
+        let ready = match engine.take() {
             Some(ready) if recoloured => ready,
-            _ => prepare(&design, &request, store, job)?,
+            _ => renderer.engine(&design, &request, store, job)?,
         };
-        let still = render_lit(&ready, &request, lights.clone(), job, &mut |pass| {
+        let still = draw(&*ready, &design, &shot, job, &mut |pass| {
             on_pass(index, count, pass);
         })?;
         let (x, y) = layout.place(index, width, height);
@@ -197,7 +201,7 @@ pub fn render_sheet(
             y,
             recoloured,
         });
-        cloth = Some(ready);
+        engine = Some(ready);
     }
     let all = StillRequest {
         colourway: Some(ALL_COLOURWAYS.to_owned()),

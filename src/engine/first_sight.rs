@@ -12,19 +12,21 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::carried::{Place, Sighted};
-use super::engine::Engine;
-use super::picture::{Content, Pass, camera, lights};
+use super::exposure::{Engine, Exposure, Pass, byte};
 use super::prepare::coloured;
-use super::request::LightChoice;
+use super::renderer::{Making, Renderer};
+use super::request::{LightChoice, StillReport};
+use super::shot::{Shot, camera, lights};
 use super::{StillError, StillRequest};
 use crate::cloth::colour::colours_on_top;
 use crate::cloth::{FaceRelief, FaceTable, TEXELS, Texel, YarnClasses};
 use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
-use crate::film::Tone;
+use crate::film::{Film, Sample, Tone};
 use crate::job::Job;
+use crate::plan::Subject;
 use crate::render::Backing;
-use crate::scene::{Camera, View};
+use crate::scene::{Camera, Pose};
 use crate::synthesis::{Catalogue, Side, key_of};
 
 /// Samples a pixel, each way, where crossings are smaller than pixels.
@@ -53,32 +55,30 @@ pub struct SightTables {
 struct ReliefKey {
     pair: Pair,
     pitch: Vec2,
-    back: bool,
+    /// Unturned: a relief is the same then.
+    pose: Pose,
 }
 
 #[derive(Clone, PartialEq)]
 struct TableKey {
     relief: ReliefKey,
     light: LightChoice,
-    turned: bool,
+    pose: Pose,
 }
 
 impl SightTables {
-    fn get(&self, key: &TableKey, view: View) -> Result<Arc<FaceTable>, StillError> {
+    fn get(&self, key: &TableKey) -> Result<Arc<FaceTable>, StillError> {
         if let Some(table) = find(&self.kept, key) {
             return Ok(table);
         }
         let relief = find(&self.reliefs, &key.relief).unwrap_or_else(|| {
             let catalogue = self.catalogue.get_or_init(Catalogue::standard);
-            let ReliefKey { pair, pitch, back } = &key.relief;
-            let relief = Arc::new(FaceRelief::new(catalogue, pair, *pitch, *back));
+            let ReliefKey { pair, pitch, pose } = &key.relief;
+            let relief = Arc::new(FaceRelief::new(catalogue, pair, *pitch, *pose));
             keep(&self.reliefs, &key.relief, &relief);
             relief
         });
-        let table = Arc::new(FaceTable::new(
-            &relief,
-            &lights(&key.light, view, key.turned)?,
-        ));
+        let table = Arc::new(FaceTable::new(&relief, &lights(&key.light, key.pose)?));
         keep(&self.kept, key, &table);
         Ok(table)
     }
@@ -134,8 +134,37 @@ struct Sight<'d> {
     /// Pixels are smaller than the finest texels.
     close: bool,
     samples: usize,
-    curve: Vec<u8>,
     backing: Backing,
+}
+
+/// Light and cover of each pixel, and what it shows.
+struct Rows {
+    light: Vec<(Vec3, f32)>,
+    places: Vec<Place>,
+}
+
+/// Display values by light, for [`show`].
+fn curve(exposure: f32) -> Vec<u8> {
+    let tone = Tone { exposure };
+    (0..CURVE)
+        .map(|step| {
+            let light = step as f32 * BRIGHTEST / (CURVE - 1) as f32;
+            byte(tone.display(Vec3::splat(light), 1.0)[0])
+        })
+        .collect()
+}
+
+/// The display values of a pixel; those of no cloth are 0.
+#[inline]
+fn show(curve: &[u8], (light, alpha): (Vec3, f32), pixel: &mut [u8]) {
+    if !(alpha > 0.0) {
+        return;
+    }
+    let places = light.clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST)) * ((CURVE - 1) as f32 / BRIGHTEST);
+    for (shown, place) in pixel.iter_mut().zip(places.to_array()) {
+        *shown = curve[(place as usize).min(CURVE - 1)];
+    }
+    pixel[3] = byte(alpha);
 }
 
 /// A crossing made ready.
@@ -160,28 +189,81 @@ impl Crossing {
     }
 }
 
+/// Its row of the table.
+pub(super) static SIGHT: Renderer = Renderer {
+    name: NAME,
+    about: "first sight, at once, without paths",
+    subjects: &[Subject::Cloth],
+    // It is as it is: no effect can be had or left out.
+    effects: &[],
+    dials: |dial| dial.name == "png-bits",
+    refines: false,
+    make,
+};
+
+const NAME: &str = "sight";
+
+fn make(making: &Making<'_>) -> Result<Box<dyn Engine>, StillError> {
+    let design = coloured(making.design, making.request)?;
+    let drawdown = Arc::new(design.weave());
+    Ok(Box::new(FirstSight::new(design, drawdown, Arc::default())))
+}
+
 impl Engine for FirstSight {
     fn name(&self) -> &'static str {
-        "first sight"
+        NAME
     }
 
-    fn draw(
+    fn expose(
         &self,
-        request: &StillRequest,
+        shot: &Shot<'_>,
         job: &Job,
         on_pass: &mut dyn FnMut(&Pass<'_>),
-    ) -> Result<(), StillError> {
+    ) -> Result<Exposure, StillError> {
         let begun = std::time::Instant::now();
-        let sighted = self.look(request, job)?;
+        let request = shot.request;
+        let design = coloured(&self.design, request)?;
+        let camera = camera(&design, request)?;
+        let sight = self.sight(&design, request, &camera)?;
+        let rows = sight.rows(&camera, request, job)?;
+        let mut film = Film::new(request.width, request.height);
+        for (pixel, (light, alpha)) in film.pixels_mut().iter_mut().zip(rows.light) {
+            let sample = Sample {
+                radiance: light * alpha,
+                alpha,
+                first: None,
+            };
+            pixel.add(0, &sample);
+        }
+        let seconds = begun.elapsed().as_secs_f64();
         on_pass(&Pass {
+            spp: 1,
+            seconds,
+            error: None,
+            film: &film,
+            shown: (shot.tone(), false),
+        });
+        let report = StillReport {
+            renderer: NAME.to_owned(),
             width: request.width,
             height: request.height,
-            spp: 0,
-            seconds: begun.elapsed().as_secs_f64(),
-            error: None,
-            content: Content::Sighted(&sighted.rgba),
-        });
-        Ok(())
+            spp: 1,
+            seconds: vec![("render".to_owned(), seconds)],
+            total_seconds: seconds,
+            effects: shot.plan.effects.clone(),
+            warnings: shot.lights.warnings.clone(),
+            ..StillReport::default()
+        };
+        Ok(Exposure {
+            film,
+            report,
+            pixels_per_mm: camera.pixels_per_mm(),
+        })
+    }
+
+    fn recolour(&mut self, design: &Arc<Design>) -> bool {
+        self.design = Arc::clone(design);
+        true
     }
 }
 
@@ -194,29 +276,19 @@ impl FirstSight {
         let design = coloured(&self.design, request)?;
         let camera = camera(&design, request)?;
         let sight = self.sight(&design, request, &camera)?;
-        job.check()?;
-        let (width, height) = (request.width as usize, request.height as usize);
-        let mut rgba = vec![0u8; width * height * 4];
-        let mut places = vec![Place::NONE; width * height];
-        let straight = request.eye.is_none() && matches!(request.view, View::Face | View::Back);
-        let columns: Vec<(i64, f32)> = if straight {
-            sight.across(&camera, width)
-        } else {
-            Vec::new()
-        };
-        (rgba.par_chunks_mut(width * 4))
-            .zip(places.par_chunks_mut(width))
-            .enumerate()
-            .for_each(|(y, (row, places))| match straight {
-                true => sight.straight_row(&camera, y, &columns, row, places),
-                false => sight.slanting_row(&camera, y, row, places),
-            });
+        let rows = sight.rows(&camera, request, job)?;
+        let curve = curve(request.exposure_ev);
+        let mut rgba = vec![0u8; rows.light.len() * 4];
+        (rgba.par_chunks_mut(4))
+            .zip(&rows.light)
+            .with_min_len(1 << 12)
+            .for_each(|(pixel, seen)| show(&curve, *seen, pixel));
         Ok(Sighted {
             rgba,
-            places,
+            places: rows.places,
             pairs: sight.classes.pairs.clone(),
             yarns: design.yarns().to_vec(),
-            back: request.view.turns_over(),
+            pose: request.pose(),
         })
     }
 
@@ -233,12 +305,12 @@ impl FirstSight {
                     relief: ReliefKey {
                         pair: pair.clone(),
                         pitch: classes.pitch,
-                        back: request.view.turns_over(),
+                        pose: request.view.pose(false),
                     },
                     light: request.light.clone(),
-                    turned: request.turned,
+                    pose: request.pose(),
                 };
-                self.tables.get(&key, request.view)
+                self.tables.get(&key)
             })
             .collect::<Result<Vec<_>, _>>()?;
         let yarns = design.yarns();
@@ -253,16 +325,6 @@ impl FirstSight {
         let (ends, picks) = (design.end_positions(), design.pick_positions());
         let pitch = |positions: &Positions| positions.repeat_mm() / f64::from(positions.threads());
         let pixels = camera.pixels_per_mm() * pitch(&ends).min(pitch(&picks)) as f32;
-        let exposure = Tone {
-            exposure: request.exposure_ev,
-        };
-        let curve = (0..CURVE)
-            .map(|step| {
-                let light = step as f32 * BRIGHTEST / (CURVE - 1) as f32;
-                let shown = exposure.display(Vec3::splat(light), 1.0)[0];
-                super::picture::byte(shown)
-            })
-            .collect();
         Ok(Sight {
             design,
             drawdown: &self.drawdown,
@@ -274,13 +336,34 @@ impl FirstSight {
             level: FaceTable::level(pixels),
             close: FaceTable::shows_texels(pixels),
             samples: ((1.0 / pixels).ceil() as usize).clamp(1, MOST_SAMPLES),
-            curve,
             backing: request.backing,
         })
     }
 }
 
 impl Sight<'_> {
+    /// All of a picture.
+    fn rows(&self, camera: &Camera, request: &StillRequest, job: &Job) -> Result<Rows, StillError> {
+        job.check()?;
+        let (width, height) = (request.width as usize, request.height as usize);
+        let mut light = vec![(Vec3::ZERO, 0.0f32); width * height];
+        let mut places = vec![Place::NONE; width * height];
+        let straight = request.is_straight();
+        let columns: Vec<(i64, f32)> = if straight {
+            self.across(camera, width)
+        } else {
+            Vec::new()
+        };
+        (light.par_chunks_mut(width))
+            .zip(places.par_chunks_mut(width))
+            .enumerate()
+            .for_each(|(y, (row, places))| match straight {
+                true => self.straight_row(camera, y, &columns, row, places),
+                false => self.slanting_row(camera, y, row, places),
+            });
+        Ok(Rows { light, places })
+    }
+
     /// End and place in it for each sample across a straight view.
     fn across(&self, camera: &Camera, width: usize) -> Vec<(i64, f32)> {
         let step = 1.0 / self.samples as f32;
@@ -298,10 +381,9 @@ impl Sight<'_> {
         camera: &Camera,
         y: usize,
         columns: &[(i64, f32)],
-        row: &mut [u8],
+        row: &mut [(Vec3, f32)],
         places: &mut [Place],
     ) {
-        let mut sums = vec![(Vec3::ZERO, 0.0f32); row.len() / 4];
         for sample in 0..self.samples {
             let along = y as f32 + (sample as f32 + 0.5) / self.samples as f32;
             let ray = camera.ray(0.5, along);
@@ -316,19 +398,25 @@ impl Sight<'_> {
                 if let Some(crossing) = crossing {
                     let (light, cover) = self.light(&crossing, u, v as f32);
                     places[column / self.samples] = self.place(&crossing, u, v as f32);
-                    let sum = &mut sums[column / self.samples];
+                    let sum = &mut row[column / self.samples];
                     *sum = (sum.0 + light, sum.1 + cover);
                 }
             }
         }
-        for (sum, pixel) in sums.into_iter().zip(row.chunks_exact_mut(4)) {
-            self.show(sum, self.samples * self.samples, pixel);
+        for pixel in row {
+            *pixel = self.seen(*pixel, self.samples * self.samples);
         }
     }
 
-    fn slanting_row(&self, camera: &Camera, y: usize, row: &mut [u8], places: &mut [Place]) {
+    fn slanting_row(
+        &self,
+        camera: &Camera,
+        y: usize,
+        row: &mut [(Vec3, f32)],
+        places: &mut [Place],
+    ) {
         let mut here: Option<Crossing> = None;
-        for (x, (pixel, shown)) in row.chunks_exact_mut(4).zip(places).enumerate() {
+        for (x, (pixel, shown)) in row.iter_mut().zip(places).enumerate() {
             let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5);
             let along = -ray.origin.z / ray.direction.z;
             if !(along > 0.0 && along.is_finite()) {
@@ -344,7 +432,7 @@ impl Sight<'_> {
             here = crossing;
             if let Some(crossing) = crossing {
                 *shown = self.place(&crossing, u as f32, v as f32);
-                self.show(self.light(&crossing, u as f32, v as f32), 1, pixel);
+                *pixel = self.seen(self.light(&crossing, u as f32, v as f32), 1);
             }
         }
     }
@@ -462,26 +550,18 @@ impl Sight<'_> {
         sum
     }
 
+    /// Light and cover of a pixel of so many samples, before what lies behind the cloth.
     #[inline]
-    fn show(&self, (light, cover): (Vec3, f32), samples: usize, pixel: &mut [u8]) {
+    fn seen(&self, (light, cover): (Vec3, f32), samples: usize) -> (Vec3, f32) {
         if !(cover > 0.0) {
-            return;
+            return (Vec3::ZERO, 0.0);
         }
         let (own, share) = (light / cover, cover / samples as f32);
-        let seen = match self.backing {
-            Backing::None => own,
-            Backing::White => own.lerp(Vec3::splat(PAPER), 1.0 - share),
-            Backing::Black => own * share,
-            Backing::Itself => own * (share + BENEATH * (1.0 - share)),
-        };
-        let places =
-            seen.clamp(Vec3::ZERO, Vec3::splat(BRIGHTEST)) * ((CURVE - 1) as f32 / BRIGHTEST);
-        for (byte, place) in pixel.iter_mut().zip(places.to_array()) {
-            *byte = self.curve[(place as usize).min(CURVE - 1)];
+        match self.backing {
+            Backing::None => (own, share),
+            Backing::White => (own.lerp(Vec3::splat(PAPER), 1.0 - share), 1.0),
+            Backing::Black => (own * share, 1.0),
+            Backing::Itself => (own * (share + BENEATH * (1.0 - share)), 1.0),
         }
-        pixel[3] = match self.backing {
-            Backing::None => super::picture::byte(share),
-            _ => u8::MAX,
-        };
     }
 }

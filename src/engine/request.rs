@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::job::Job;
 use crate::plan::{DialError, EffectChoice, Plan, Planned, Settings, Subject};
 use crate::render::Backing;
-use crate::scene::{PRESET_NAMES, View};
+use crate::scene::{PRESET_NAMES, Pose, View};
 
 /// Samples a pixel when a request gives no way to stop.
 pub const USUAL_SPP: u32 = 64;
@@ -154,6 +154,16 @@ impl Default for StillRequest {
 }
 
 impl StillRequest {
+    /// How the cloth lies before the eye.
+    pub fn pose(&self) -> Pose {
+        self.view.pose(self.turned)
+    }
+
+    /// Whether the eye looks straight on the cloth, without perspective.
+    pub fn is_straight(&self) -> bool {
+        self.eye.is_none() && self.view.is_straight()
+    }
+
     /// What each system takes for this picture of `subject`.
     ///
     /// # Errors

@@ -1,35 +1,41 @@
-//! Stills: from a design and a request to a picture, for the command line and the window.
+//! Draws designs: the table of engines, and the pictures that are taken with them.
 //!
-//! [`prepare`] makes the cloth (exemplars, synthesis, colours), [`render()`] traces it pass
-//! by pass and calls back after each, and [`Still::save`] writes the result. Both the
-//! command line and the window are consumers of the same passes. [`render_sheet`] puts all
-//! colourways of a design side by side, the cloth made once wherever their yarns allow;
-//! [`render_grid`] takes a picture of a volume that was read.
+//! A [`StillRequest`] says what is asked for. A [`Renderer`], one row of the table, plans what
+//! it simulates of that, and makes an [`Engine`] for the design, whose [`Engine::expose`] gives
+//! an [`Exposure`] of a [`Shot`]; developed, that is a [`Still`], which is shown and written. [`render_still`] does all of it, [`render_sheet`] puts all colourways of
+//! a design side by side, [`render_grid`] takes a picture of voxels that were read. The path
+//! tracer of a [`PreparedCloth`](crate::cloth::PreparedCloth) is the reference; [`FirstSight`]
+//! is there at once; [`Standing`] is what a window shows while the one becomes the other.
 
 mod again;
 mod carried;
-mod engine;
+mod exposure;
 mod finishing;
 mod first_sight;
 mod grid;
-mod part;
-mod picture;
 mod planes;
 mod prepare;
+mod renderer;
 mod request;
 mod sheet;
+mod shot;
 mod standing;
+mod still;
+mod table;
+mod tracer;
 
 pub use carried::{Carried, Sighted};
-pub use engine::Engine;
+pub use exposure::{Engine, Exposure, Pass};
 pub use first_sight::{FirstSight, SightTables};
 pub use grid::{light_warnings, render_grid, scene_files};
-pub use part::check_view;
-pub use picture::{Pass, Still, place_on, render, render_still, usual_width_mm};
-pub use prepare::{Followed, PreparedCloth, UnfinishedCloth, prepare, prepare_woven};
+pub use prepare::{check_view, coloured, covers, follow, prepare, prepare_woven};
+pub use renderer::Renderer;
 pub use request::{Heading, LightChoice, StillReport, StillRequest, Stop, USUAL_SPP};
 pub use sheet::{ALL_COLOURWAYS, AS_DESIGNED, Sheet, SheetPlace, render_sheet};
+pub use shot::{Shot, place_on, usual_width_mm};
 pub use standing::Standing;
+pub use still::{Still, draw, render, render_still};
+pub use table::{RENDERERS, reference, renderer};
 
 use std::path::{Path, PathBuf};
 
@@ -80,6 +86,12 @@ pub enum StillError {
     /// A sheet of colourways in a format that cannot hold it.
     #[error("{}: a sheet of colourways is written as .png; end the name in that", .0.display())]
     SheetEnding(PathBuf),
+    /// No engine has this name.
+    #[error("--renderer {0}: this build has no such renderer: use auto, {1}")]
+    Renderer(String, String),
+    /// An engine that does not draw what is looked at.
+    #[error("--renderer {0}: it draws no volume, only the cloth of a design: use auto")]
+    Subject(&'static str),
     /// The volume could not be read.
     #[error(transparent)]
     Volume(VolumeFileError),

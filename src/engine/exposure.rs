@@ -1,0 +1,82 @@
+//! What engines give: the picture while it refines, and the film that it ends with.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::StillError;
+use super::request::StillReport;
+use super::shot::Shot;
+use crate::design::Design;
+use crate::film::{Denoise, Film, Tone};
+use crate::job::Job;
+
+/// Draws one subject: the cloth of a design, or voxels that were read.
+pub trait Engine: Send + Sync {
+    /// What it is called in reports and on the command line.
+    fn name(&self) -> &'static str;
+
+    /// Draws what `shot` asks for; `on_pass` sees the picture whenever it is better.
+    ///
+    /// # Errors
+    /// When the request is not usable or the job is cancelled.
+    fn expose(
+        &self,
+        shot: &Shot<'_>,
+        job: &Job,
+        on_pass: &mut dyn FnMut(&Pass<'_>),
+    ) -> Result<Exposure, StillError>;
+
+    /// Draws `design`, the same in another colourway, from now on. False, and nothing changed,
+    /// where that takes as much as making the engine anew.
+    fn recolour(&mut self, design: &Arc<Design>) -> bool;
+}
+
+/// What an engine made of a shot.
+pub struct Exposure {
+    /// Linear means, variances and features.
+    pub film: Film,
+    /// Its stages, counters, error and remarks.
+    pub report: StillReport,
+    /// Scale of the picture.
+    pub pixels_per_mm: f32,
+}
+
+/// The picture so far. What it shows is worked out when it is asked for.
+pub struct Pass<'p> {
+    /// Samples in every pixel.
+    pub spp: u32,
+    /// Seconds of rendering.
+    pub seconds: f64,
+    /// Error so far.
+    pub error: Option<f64>,
+    /// Linear means, variances and features.
+    pub film: &'p Film,
+    /// How it is shown, and whether it is denoised for that.
+    pub(super) shown: (Tone, bool),
+}
+
+impl Pass<'_> {
+    /// sRGB with straight alpha, top row first.
+    pub fn rgba(&self) -> Vec<u8> {
+        let (tone, _) = self.shown;
+        let picture = match self.clean(&Job::new()) {
+            Some(clean) => tone.picture_of(self.film, &clean),
+            None => tone.picture(self.film),
+        };
+        let pixels = picture.pixels.iter();
+        pixels.flat_map(|pixel| pixel.map(byte)).collect()
+    }
+
+    /// The film's radiances denoised, where they are and the job is not cancelled.
+    pub fn clean(&self, job: &Job) -> Option<Vec<Vec3>> {
+        let (_, denoise) = self.shown;
+        denoise
+            .then(|| Denoise::default().apply(self.film, job).ok())
+            .flatten()
+    }
+}
+
+pub(super) fn byte(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0).round() as u8
+}

@@ -1,0 +1,76 @@
+//! Every engine of the table makes every kind of picture.
+
+use std::sync::Arc;
+
+use pickglass::engine::{
+    LightChoice, RENDERERS, StillRequest, Stop, reference, render_sheet, render_still,
+};
+use pickglass::exemplar::ExemplarStore;
+use pickglass::film::Picture;
+use pickglass::job::Job;
+use pickglass::presets;
+
+fn request() -> StillRequest {
+    StillRequest {
+        width: 40,
+        height: 30,
+        width_mm: Some(6.0),
+        light: LightChoice::Preset("day".to_owned()),
+        stop: Stop {
+            spp: Some(4),
+            ..Stop::default()
+        },
+        ..StillRequest::default()
+    }
+}
+
+/// Mean display value of a picture.
+fn mean(picture: &Picture) -> f64 {
+    let values = picture.pixels.iter().flat_map(|pixel| &pixel[..3]);
+    values.map(|value| f64::from(*value)).sum::<f64>() / (3.0 * picture.pixels.len() as f64)
+}
+
+#[test]
+fn every_engine_makes_stills_sheets_and_exr() {
+    let folder = tempfile::tempdir().unwrap();
+    let design = Arc::new(presets::design("herringbone").unwrap().unwrap());
+    let (request, job, store) = (request(), Job::new(), ExemplarStore::user());
+    let mut brightness = Vec::new();
+    for renderer in RENDERERS {
+        let still = render_still(&design, &request, renderer, &job, &mut |_| {}).unwrap();
+        assert_eq!(still.report.renderer, renderer.name);
+        assert!(still.report.total_seconds > 0.0);
+        brightness.push(mean(&still.picture()));
+        for file in ["a.png", "a.exr"] {
+            let path = folder.path().join(file);
+            still.save(&path).unwrap();
+            assert!(std::fs::metadata(&path).unwrap().len() > 500, "{file}");
+        }
+        let mut seen = Vec::new();
+        let sheet = render_sheet(
+            &design,
+            &request,
+            renderer,
+            &store,
+            &job,
+            &mut |at, _, pass| {
+                seen.push((at, pass.rgba().len()));
+            },
+        );
+        let sheet = sheet.unwrap();
+        assert_eq!(sheet.report.renderer, renderer.name);
+        assert_eq!(sheet.places.len(), 4);
+        assert!(sheet.places[1..].iter().all(|place| place.recoloured));
+        // Each picture was seen on its way, whole.
+        assert!(
+            (0..4).all(|at| seen.contains(&(at, 40 * 30 * 4))),
+            "{seen:?}"
+        );
+    }
+    // They draw the same cloth.
+    let [traced, sight] = brightness[..] else {
+        panic!("{brightness:?}")
+    };
+    assert!((traced / sight - 1.0).abs() < 0.25, "{brightness:?}");
+    assert_eq!(RENDERERS[0], reference());
+}
