@@ -1,10 +1,42 @@
 //! Pickglass: woven cloth from drafts, path-traced.
 //!
-//! Data flows in one direction: [`design`] (what the designer makes) is changed by
-//! [`edit`], read and written by [`formats`]; [`yarn`] and [`exemplar`] turn yarn recipes into voxels to
-//! copy from; [`synthesis`] decides which exemplar block every crossing copies;
-//! [`cloth`] is the implicit volume that results; [`render`] traces it, or any other
-//! [`render::Medium`], into a film. [`posterise`] makes a design of a photograph.
+//! ```text
+//!   formats ──▶ design ◀── edit          what is made: weave, yarns, sett
+//!   posterise ──▶ │
+//!                 ▼
+//!   yarn ─▶ exemplar ─▶ synthesis        voxels to copy from; which block each crossing copies
+//!                 │
+//!                 ▼
+//!               cloth                    the implicit volume: a position becomes a voxel
+//!                 │
+//!                 ▼
+//!   scene ─▶ render ─▶ film              paths through it from a camera, summed in pixels
+//!                 │
+//!                 ▼
+//!   plan ─▶ engine ─▶ formats            what is simulated; stills, sheets, first sight
+//! ```
+//!
+//! A crossing becomes a pixel like this: [`synthesis`] gives each crossing of the drawdown the
+//! block of an exemplar ([`exemplar`], made of the curves of [`yarn`]); [`cloth`] finds the
+//! crossing of a position and reads that block's voxel, moved by edge fixing and by chance;
+//! [`render`] walks rays through any such [`render::Medium`] and scatters them; [`film`] sums
+//! them, denoises, and shows them; an [`engine`] is all of that for one design, and
+//! [`plan`] says which effects and which settings it takes.
+//!
+//! A still of a design that comes with the program:
+//!
+//! ```
+//! use std::sync::Arc;
+//! use pickglass::{engine, job::Job, presets};
+//!
+//! let design = Arc::new(presets::design("denim").ok_or("no such preset")??);
+//! let request = engine::StillRequest { width: 320, height: 240, ..Default::default() };
+//! // First sight is there at once; engine::reference() traces paths.
+//! let sight = engine::renderer("sight")?;
+//! let still = engine::render_still(&design, &request, sight, &Job::new(), &mut |_| {})?;
+//! still.save(&std::env::temp_dir().join("denim.png"))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # The house
 //! Imports go up this table only. Those in italics have still to go; `tests/house.rs` keeps

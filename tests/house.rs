@@ -467,7 +467,7 @@ fn a_wrong_import_is_found() {
     let rows = table(&sources["lib.rs"]);
     let wrong = [
         ("use crate::engine::Request;", "yarn", "engine"),
-        ("use crate::{still::Request};", "yarn", "engine"),
+        ("use crate::{engine::Request};", "yarn", "engine"),
         ("fn f() { crate::render::trace(); }", "yarn", "render"),
         (
             "fn f() { assert!(crate::cloth::is() == 1); }",

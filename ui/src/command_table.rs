@@ -64,7 +64,7 @@ pub enum Toward {
     Down,
 }
 
-/// Something one can do.
+/// Something one can do. Each group has one handler, whose match leaves none of it out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
     New,
@@ -81,14 +81,42 @@ pub enum Command {
     Quit,
     Undo,
     Redo,
-    Cut,
-    Copy,
-    Paste,
+    Reference,
+    NextColourway,
+    PreviousColourway,
+    /// The colourway of this place by name, from 1.
+    Colourway(u8),
+    ContactSheet,
+    SideBySide,
+    Arrange(DraftLayout),
+    Use(Tool),
+    SwapColours,
+    Glass,
+    Theme,
+    NextPane,
+    Show(Pane),
+    ResetLayout,
+    Palette,
+    Shortcuts,
+    /// Changes the weave, or what is selected of it.
+    Weave(WeaveCommand),
+    /// Looks at the cloth.
+    Cloth(ClothCommand),
+    /// Of the view that is in use.
+    Zoom(ZoomCommand),
+    /// Turns something on or off.
+    Switch(Switch),
+}
+
+/// Changes the weave, or what is selected of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WeaveCommand {
     SelectAll,
     Deselect,
+    Copy,
+    Cut,
+    Paste,
     Clear,
-    FillSelection,
-    StampWeave,
     Invert,
     MirrorAcross,
     MirrorAlong,
@@ -97,29 +125,21 @@ pub enum Command {
     Roll(Toward),
     Resize,
     Repeat,
-    Loom,
+    StampWeave,
+    FillSelection,
     Words,
+    Loom,
     CropToSelection,
     Repeat2,
     RepeatMore,
     ClearCorrections,
-    SymmetryAcross,
-    SymmetryAlong,
-    SymmetrySteps,
-    Reference,
-    ReferenceShown,
-    ReferenceFit,
-    NextColourway,
-    PreviousColourway,
-    /// The colourway of this place by name, from 1.
-    Colourway(u8),
-    ContactSheet,
-    SideBySide,
     DeriveDraft,
     BecomeJacquard,
-    Arrange(DraftLayout),
-    Use(Tool),
-    SwapColours,
+}
+
+/// Looks at the cloth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClothCommand {
     Look(View),
     TurnOver,
     Straighten,
@@ -127,23 +147,31 @@ pub enum Command {
     Orbit(Toward),
     /// The eye goes along the cloth.
     Pan(Toward),
-    Glass,
+    Pause,
+}
+
+/// How large the view in use shows what it shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ZoomCommand {
     Fit,
     ActualSize,
-    ZoomIn,
-    ZoomOut,
+    In,
+    Out,
+}
+
+/// What is on or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Switch {
     Structure,
     GridLines,
     LongFloats,
     Ghosts,
     Navigator,
-    Pause,
-    Theme,
-    NextPane,
-    Show(Pane),
-    ResetLayout,
-    Palette,
-    Shortcuts,
+    SymmetryAcross,
+    SymmetryAlong,
+    SymmetrySteps,
+    ReferenceShown,
+    ReferenceFit,
 }
 
 /// The menu a command stands in.
@@ -271,35 +299,35 @@ pub const TABLE: &[Row] = &[
 
     row(Command::Undo, Menu::Edit, "Undo", "Take back the last change", &[ctrl(Key::Z), plain(Key::Z)]),
     row(Command::Redo, Menu::Edit, "Redo", "Make the change again", &[ctrl_shift(Key::Z), ctrl(Key::Y), shift(Key::Z)]),
-    apart(row(Command::Cut, Menu::Edit, "Cut", "Copy the selection and leave weft up there", &[ctrl(Key::X)])),
-    row(Command::Copy, Menu::Edit, "Copy", "Copy the selected crossings", &[ctrl(Key::C)]),
-    row(Command::Paste, Menu::Edit, "Paste", "Stamp what was copied; click to place it", &[ctrl(Key::V)]),
-    row(Command::Clear, Menu::Edit, "Clear", "Weft up in the whole selection", &[plain(Key::Delete)]),
-    apart(row(Command::StampWeave, Menu::Edit, "Stamp a weave…", "Take a weave by its notation, or from the library, as the stamp", &[ctrl(Key::B)])),
-    row(Command::FillSelection, Menu::Edit, "Fill with the stamp", "The selection is filled with what was copied, repeated", &[ctrl(Key::F)]),
-    apart(row(Command::SelectAll, Menu::Edit, "Select all", "Select one whole repeat", &[ctrl(Key::A)])),
-    row(Command::Deselect, Menu::Edit, "Select nothing", "Forget the selection", &[ctrl_shift(Key::A)]),
+    apart(row(Command::Weave(WeaveCommand::Cut), Menu::Edit, "Cut", "Copy the selection and leave weft up there", &[ctrl(Key::X)])),
+    row(Command::Weave(WeaveCommand::Copy), Menu::Edit, "Copy", "Copy the selected crossings", &[ctrl(Key::C)]),
+    row(Command::Weave(WeaveCommand::Paste), Menu::Edit, "Paste", "Stamp what was copied; click to place it", &[ctrl(Key::V)]),
+    row(Command::Weave(WeaveCommand::Clear), Menu::Edit, "Clear", "Weft up in the whole selection", &[plain(Key::Delete)]),
+    apart(row(Command::Weave(WeaveCommand::StampWeave), Menu::Edit, "Stamp a weave…", "Take a weave by its notation, or from the library, as the stamp", &[ctrl(Key::B)])),
+    row(Command::Weave(WeaveCommand::FillSelection), Menu::Edit, "Fill with the stamp", "The selection is filled with what was copied, repeated", &[ctrl(Key::F)]),
+    apart(row(Command::Weave(WeaveCommand::SelectAll), Menu::Edit, "Select all", "Select one whole repeat", &[ctrl(Key::A)])),
+    row(Command::Weave(WeaveCommand::Deselect), Menu::Edit, "Select nothing", "Forget the selection", &[ctrl_shift(Key::A)]),
 
-    row(Command::Invert, Menu::Weave, "Invert", "Exchange warp up and weft up", &[ctrl(Key::I)]),
-    row(Command::MirrorAcross, Menu::Weave, "Mirror left and right", "Z twill becomes S", &[ctrl(Key::H)]),
-    row(Command::MirrorAlong, Menu::Weave, "Mirror top and bottom", "Z twill becomes S", &[ctrl_shift(Key::H)]),
-    row(Command::TurnHalf, Menu::Weave, "Turn by half", "Turn by 180°; twills keep their hand", &[]),
-    row(Command::TurnQuarter, Menu::Weave, "Turn by a quarter", "Turn by 90°; ends become picks", &[]),
-    apart(row(Command::Roll(Toward::Left), Menu::Weave, "Roll left", "Move the repeat by one end, round the edge", &[alt(Key::ArrowLeft)])),
-    row(Command::Roll(Toward::Right), Menu::Weave, "Roll right", "Move the repeat by one end, round the edge", &[alt(Key::ArrowRight)]),
-    row(Command::Roll(Toward::Up), Menu::Weave, "Roll up", "Move the repeat by one pick, round the edge", &[alt(Key::ArrowUp)]),
-    row(Command::Roll(Toward::Down), Menu::Weave, "Roll down", "Move the repeat by one pick, round the edge", &[alt(Key::ArrowDown)]),
-    apart(row(Command::Resize, Menu::Weave, "Resize…", "Another number of ends and picks: cut off, or repeated to fill", &[])),
-    row(Command::Repeat, Menu::Weave, "Repeat…", "Straight, shifted like bricks, or not at all", &[]),
-    row(Command::CropToSelection, Menu::Weave, "Crop to the selection", "Keep the selected crossings alone", &[]),
-    row(Command::Repeat2, Menu::Weave, "Repeat 2 × 2", "Four repeats become one, so that they can differ", &[]),
-    row(Command::RepeatMore, Menu::Weave, "Repeat more often…", "As many repeats as you like become one", &[]),
-    row(Command::ClearCorrections, Menu::Weave, "Clear hand corrections", "The weaves of the regions again, where selected or everywhere", &[]),
-    apart(row(Command::DeriveDraft, Menu::Weave, "Derive the draft", "Threading, tie-up and treadling on the fewest shafts", &[])),
-    row(Command::Loom, Menu::Weave, "Loom…", "Shafts and treadles, lift plan, rising or sinking shed", &[]),
-    row(Command::BecomeJacquard, Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])
+    row(Command::Weave(WeaveCommand::Invert), Menu::Weave, "Invert", "Exchange warp up and weft up", &[ctrl(Key::I)]),
+    row(Command::Weave(WeaveCommand::MirrorAcross), Menu::Weave, "Mirror left and right", "Z twill becomes S", &[ctrl(Key::H)]),
+    row(Command::Weave(WeaveCommand::MirrorAlong), Menu::Weave, "Mirror top and bottom", "Z twill becomes S", &[ctrl_shift(Key::H)]),
+    row(Command::Weave(WeaveCommand::TurnHalf), Menu::Weave, "Turn by half", "Turn by 180°; twills keep their hand", &[]),
+    row(Command::Weave(WeaveCommand::TurnQuarter), Menu::Weave, "Turn by a quarter", "Turn by 90°; ends become picks", &[]),
+    apart(row(Command::Weave(WeaveCommand::Roll(Toward::Left)), Menu::Weave, "Roll left", "Move the repeat by one end, round the edge", &[alt(Key::ArrowLeft)])),
+    row(Command::Weave(WeaveCommand::Roll(Toward::Right)), Menu::Weave, "Roll right", "Move the repeat by one end, round the edge", &[alt(Key::ArrowRight)]),
+    row(Command::Weave(WeaveCommand::Roll(Toward::Up)), Menu::Weave, "Roll up", "Move the repeat by one pick, round the edge", &[alt(Key::ArrowUp)]),
+    row(Command::Weave(WeaveCommand::Roll(Toward::Down)), Menu::Weave, "Roll down", "Move the repeat by one pick, round the edge", &[alt(Key::ArrowDown)]),
+    apart(row(Command::Weave(WeaveCommand::Resize), Menu::Weave, "Resize…", "Another number of ends and picks: cut off, or repeated to fill", &[])),
+    row(Command::Weave(WeaveCommand::Repeat), Menu::Weave, "Repeat…", "Straight, shifted like bricks, or not at all", &[]),
+    row(Command::Weave(WeaveCommand::CropToSelection), Menu::Weave, "Crop to the selection", "Keep the selected crossings alone", &[]),
+    row(Command::Weave(WeaveCommand::Repeat2), Menu::Weave, "Repeat 2 × 2", "Four repeats become one, so that they can differ", &[]),
+    row(Command::Weave(WeaveCommand::RepeatMore), Menu::Weave, "Repeat more often…", "As many repeats as you like become one", &[]),
+    row(Command::Weave(WeaveCommand::ClearCorrections), Menu::Weave, "Clear hand corrections", "The weaves of the regions again, where selected or everywhere", &[]),
+    apart(row(Command::Weave(WeaveCommand::DeriveDraft), Menu::Weave, "Derive the draft", "Threading, tie-up and treadling on the fewest shafts", &[])),
+    row(Command::Weave(WeaveCommand::Loom), Menu::Weave, "Loom…", "Shafts and treadles, lift plan, rising or sinking shed", &[]),
+    row(Command::Weave(WeaveCommand::BecomeJacquard), Menu::Weave, "Become a jacquard", "Every crossing free; the draft is let go", &[])
     ,
-    apart(row(Command::Words, Menu::Weave, "Name and notes…", "What the design is called, and what to remember", &[])),
+    apart(row(Command::Weave(WeaveCommand::Words), Menu::Weave, "Name and notes…", "What the design is called, and what to remember", &[])),
     apart(row(Command::Arrange(DraftLayout::Us), Menu::Weave, "US layout", "Threading above; end 1 at the right, pick 1 at the top. The cloth is turned under the same light: satin areas swap between light and dark", &[])),
     row(Command::Arrange(DraftLayout::Scandinavian), Menu::Weave, "Scandinavian layout", "Threading below; end 1 at the left, pick 1 at the bottom", &[]),
     row(Command::Arrange(DraftLayout::Jacquard), Menu::Weave, "Drawdown alone", "Neither threading nor treadling; end 1 at the left, pick 1 at the bottom", &[]),
@@ -328,40 +356,40 @@ pub const TABLE: &[Row] = &[
     row(Command::Use(Tool::Move), Menu::Tools, "Move", "Move the selected crossings", &[plain(Key::M)]),
     row(Command::Use(Tool::Stamp), Menu::Tools, "Stamp", "Stamp what was copied", &[plain(Key::B)]),
     apart(row(Command::SwapColours, Menu::Tools, "Exchange the paint", "Exchange what the first and the second button paint", &[plain(Key::X)])),
-    row(Command::SymmetryAcross, Menu::Tools, "Paint mirrored left and right", "What is painted left is painted right as well", &[]),
-    row(Command::SymmetryAlong, Menu::Tools, "Paint mirrored top and bottom", "What is painted above is painted below as well", &[]),
-    row(Command::SymmetrySteps, Menu::Tools, "Paint in steps", "What is painted is painted again every so many ends and picks", &[]),
+    row(Command::Switch(Switch::SymmetryAcross), Menu::Tools, "Paint mirrored left and right", "What is painted left is painted right as well", &[]),
+    row(Command::Switch(Switch::SymmetryAlong), Menu::Tools, "Paint mirrored top and bottom", "What is painted above is painted below as well", &[]),
+    row(Command::Switch(Switch::SymmetrySteps), Menu::Tools, "Paint in steps", "What is painted is painted again every so many ends and picks", &[]),
     apart(row(Command::Reference, Menu::Tools, "Reference image…", "A picture over the draft to draw by; it is no part of the weave", &[])),
-    row(Command::ReferenceShown, Menu::Tools, "Show the reference", "Show or hide the picture that is drawn by", &[plain(Key::V)]),
-    row(Command::ReferenceFit, Menu::Tools, "How the reference lies…", "How strongly it shows, and whether it is stretched", &[]),
+    row(Command::Switch(Switch::ReferenceShown), Menu::Tools, "Show the reference", "Show or hide the picture that is drawn by", &[plain(Key::V)]),
+    row(Command::Switch(Switch::ReferenceFit), Menu::Tools, "How the reference lies…", "How strongly it shows, and whether it is stretched", &[]),
 
-    row(Command::TurnOver, Menu::Cloth, "Turn the cloth over", "From the face to the back and again, as one turns a page", &[plain(Key::T)]),
-    row(Command::Straighten, Menu::Cloth, "Look straight on", "The eye above the cloth again", &[plain(Key::Num0)]),
-    apart(row(Command::Orbit(Toward::Left), Menu::Cloth, "Turn the eye left", "Round the cloth; lower the eye first", &[plain(Key::OpenBracket)])),
-    row(Command::Orbit(Toward::Right), Menu::Cloth, "Turn the eye right", "Round the cloth; lower the eye first", &[plain(Key::CloseBracket)]),
-    row(Command::Orbit(Toward::Up), Menu::Cloth, "Raise the eye", "Towards straight above the cloth", &[plain(Key::PageUp)]),
-    row(Command::Orbit(Toward::Down), Menu::Cloth, "Lower the eye", "Towards the edge of the cloth", &[plain(Key::PageDown)]),
-    apart(row(Command::Pan(Toward::Left), Menu::Cloth, "Look further left", "Along the cloth; the arrow keys do it too while the cloth has the keyboard", &[ctrl_shift(Key::ArrowLeft)])),
-    row(Command::Pan(Toward::Right), Menu::Cloth, "Look further right", "Along the cloth", &[ctrl_shift(Key::ArrowRight)]),
-    row(Command::Pan(Toward::Up), Menu::Cloth, "Look further up", "Along the cloth", &[ctrl_shift(Key::ArrowUp)]),
-    row(Command::Pan(Toward::Down), Menu::Cloth, "Look further down", "Along the cloth", &[ctrl_shift(Key::ArrowDown)]),
+    row(Command::Cloth(ClothCommand::TurnOver), Menu::Cloth, "Turn the cloth over", "From the face to the back and again, as one turns a page", &[plain(Key::T)]),
+    row(Command::Cloth(ClothCommand::Straighten), Menu::Cloth, "Look straight on", "The eye above the cloth again", &[plain(Key::Num0)]),
+    apart(row(Command::Cloth(ClothCommand::Orbit(Toward::Left)), Menu::Cloth, "Turn the eye left", "Round the cloth; lower the eye first", &[plain(Key::OpenBracket)])),
+    row(Command::Cloth(ClothCommand::Orbit(Toward::Right)), Menu::Cloth, "Turn the eye right", "Round the cloth; lower the eye first", &[plain(Key::CloseBracket)]),
+    row(Command::Cloth(ClothCommand::Orbit(Toward::Up)), Menu::Cloth, "Raise the eye", "Towards straight above the cloth", &[plain(Key::PageUp)]),
+    row(Command::Cloth(ClothCommand::Orbit(Toward::Down)), Menu::Cloth, "Lower the eye", "Towards the edge of the cloth", &[plain(Key::PageDown)]),
+    apart(row(Command::Cloth(ClothCommand::Pan(Toward::Left)), Menu::Cloth, "Look further left", "Along the cloth; the arrow keys do it too while the cloth has the keyboard", &[ctrl_shift(Key::ArrowLeft)])),
+    row(Command::Cloth(ClothCommand::Pan(Toward::Right)), Menu::Cloth, "Look further right", "Along the cloth", &[ctrl_shift(Key::ArrowRight)]),
+    row(Command::Cloth(ClothCommand::Pan(Toward::Up)), Menu::Cloth, "Look further up", "Along the cloth", &[ctrl_shift(Key::ArrowUp)]),
+    row(Command::Cloth(ClothCommand::Pan(Toward::Down)), Menu::Cloth, "Look further down", "Along the cloth", &[ctrl_shift(Key::ArrowDown)]),
     apart(row(Command::Glass, Menu::Cloth, "Pick glass", "Ten times closer at the pointer, or in the middle, while the key is held over the cloth", &[plain(Key::Q)])),
 
-    row(Command::Look(View::Face), Menu::View, "Face", "Straight on the face: one repeat, or 20 cm where it is wider", &[ctrl(Key::Num1)]),
-    row(Command::Look(View::Back), Menu::View, "Back", "The other side, turned over as one turns a page", &[ctrl(Key::Num2)]),
-    row(Command::Look(View::Close), Menu::View, "Close", "A few threads, as under a hand lens", &[ctrl(Key::Num3)]),
-    row(Command::Look(View::Oblique), Menu::View, "Oblique", "From the lower edge, 45° above the cloth", &[ctrl(Key::Num4)]),
-    row(Command::Look(View::Grazing), Menu::View, "Grazing", "From the lower edge, 18° above the cloth", &[ctrl(Key::Num5)]),
-    apart(row(Command::Fit, Menu::View, "Fit the design", "Show one repeat of the whole design", &[plain(Key::F)])),
-    row(Command::ActualSize, Menu::View, "Actual size", "Cloth at its true size; in the draft a point a crossing", &[plain(Key::Num1)]),
-    row(Command::ZoomIn, Menu::View, "Zoom in", "Look closer", &[plain(Key::Plus), plain(Key::Equals)]),
-    row(Command::ZoomOut, Menu::View, "Zoom out", "Look from further away", &[plain(Key::Minus)]),
-    apart(row(Command::Structure, Menu::View, "Structure alone", "Warp up black and weft up white, or the colours of the yarns", &[plain(Key::C)])),
-    row(Command::GridLines, Menu::View, "Grid lines", "Lines between the crossings", &[plain(Key::H)]),
-    row(Command::LongFloats, Menu::View, "Long floats", "Mark floats longer than the limit", &[plain(Key::O)]),
-    row(Command::Ghosts, Menu::View, "Ghost repeats", "Show faded how the design goes on", &[]),
-    row(Command::Navigator, Menu::View, "Navigator", "Three by three repeats, small", &[plain(Key::N)]),
-    apart(row(Command::Pause, Menu::View, "Pause refining", "Stop and resume the refining of the picture", &[shift(Key::P)])),
+    row(Command::Cloth(ClothCommand::Look(View::Face)), Menu::View, "Face", "Straight on the face: one repeat, or 20 cm where it is wider", &[ctrl(Key::Num1)]),
+    row(Command::Cloth(ClothCommand::Look(View::Back)), Menu::View, "Back", "The other side, turned over as one turns a page", &[ctrl(Key::Num2)]),
+    row(Command::Cloth(ClothCommand::Look(View::Close)), Menu::View, "Close", "A few threads, as under a hand lens", &[ctrl(Key::Num3)]),
+    row(Command::Cloth(ClothCommand::Look(View::Oblique)), Menu::View, "Oblique", "From the lower edge, 45° above the cloth", &[ctrl(Key::Num4)]),
+    row(Command::Cloth(ClothCommand::Look(View::Grazing)), Menu::View, "Grazing", "From the lower edge, 18° above the cloth", &[ctrl(Key::Num5)]),
+    apart(row(Command::Zoom(ZoomCommand::Fit), Menu::View, "Fit the design", "Show one repeat of the whole design", &[plain(Key::F)])),
+    row(Command::Zoom(ZoomCommand::ActualSize), Menu::View, "Actual size", "Cloth at its true size; in the draft a point a crossing", &[plain(Key::Num1)]),
+    row(Command::Zoom(ZoomCommand::In), Menu::View, "Zoom in", "Look closer", &[plain(Key::Plus), plain(Key::Equals)]),
+    row(Command::Zoom(ZoomCommand::Out), Menu::View, "Zoom out", "Look from further away", &[plain(Key::Minus)]),
+    apart(row(Command::Switch(Switch::Structure), Menu::View, "Structure alone", "Warp up black and weft up white, or the colours of the yarns", &[plain(Key::C)])),
+    row(Command::Switch(Switch::GridLines), Menu::View, "Grid lines", "Lines between the crossings", &[plain(Key::H)]),
+    row(Command::Switch(Switch::LongFloats), Menu::View, "Long floats", "Mark floats longer than the limit", &[plain(Key::O)]),
+    row(Command::Switch(Switch::Ghosts), Menu::View, "Ghost repeats", "Show faded how the design goes on", &[]),
+    row(Command::Switch(Switch::Navigator), Menu::View, "Navigator", "Three by three repeats, small", &[plain(Key::N)]),
+    apart(row(Command::Cloth(ClothCommand::Pause), Menu::View, "Pause refining", "Stop and resume the refining of the picture", &[shift(Key::P)])),
     row(Command::NextPane, Menu::View, "Draft or cloth", "Exchange the keyboard between draft and cloth", &[plain(Key::F6)]),
     row(Command::Theme, Menu::View, "Light or dark", "Change between the light and the dark theme", &[ctrl(Key::T)]),
 
@@ -459,7 +487,7 @@ mod tests {
     #[test]
     fn every_view_tool_and_pane_has_a_command() {
         for &view in View::ALL {
-            assert!(row_of(Command::Look(view)).is_some());
+            assert!(row_of(Command::Cloth(ClothCommand::Look(view))).is_some());
         }
         for tool in Tool::ALL {
             assert!(row_of(Command::Use(tool)).is_some());

@@ -37,15 +37,17 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// The kept layout, or the usual one where that is of another version or not whole.
+    /// The kept layout, with the panes that there were not yet when it was kept; or the usual
+    /// one where that is of another version or damaged.
     pub fn from_kept(kept: Option<KeptLayout>) -> Self {
-        match kept {
-            Some(mut kept) if kept.version == VERSION && whole(&kept.tree) => {
-                kept.tree.set_height(f32::INFINITY);
-                kept.tree.set_width(f32::INFINITY);
-                Self { tree: kept.tree }
+        let kept = kept.filter(|kept| kept.version == VERSION);
+        match kept.and_then(|kept| completed(kept.tree)) {
+            Some(mut tree) => {
+                tree.set_height(f32::INFINITY);
+                tree.set_width(f32::INFINITY);
+                Self { tree }
             }
-            _ => Self::default(),
+            None => Self::default(),
         }
     }
 
@@ -92,26 +94,57 @@ fn usual() -> Tree<Pane> {
     Tree::new(Id::unique("panes"), root, tiles)
 }
 
-/// Whether every pane is there once, under one root, and nothing else is.
-fn whole(tree: &Tree<Pane>) -> bool {
+/// The same with the panes that are not in it, as tabs beside others; `None` = damaged.
+fn completed(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
+    let (found, root) = (sound_panes(&tree)?, tree.root?);
+    let missing = Pane::ALL.iter().filter(|pane| !found.contains(pane));
+    let added: Vec<TileId> = missing.map(|pane| tree.tiles.insert_pane(*pane)).collect();
+    if added.is_empty() {
+        return Some(tree);
+    }
+    let tabs = (tree.tiles.iter())
+        .filter(|(_, tile)| matches!(tile, Tile::Container(Container::Tabs(_))))
+        .map(|(id, _)| *id)
+        .min_by_key(|id| id.0);
+    match tabs.and_then(|id| tree.tiles.get_mut(id)) {
+        Some(Tile::Container(tabs)) => added.into_iter().for_each(|id| tabs.add_child(id)),
+        _ => {
+            let tabs = tree.tiles.insert_tab_tile(added);
+            let mut column = Linear::new(LinearDir::Vertical, vec![root, tabs]);
+            column.shares.set_share(root, SHARES[0]);
+            column.shares.set_share(tabs, SHARES[1]);
+            let column = Container::Linear(column);
+            tree.root = Some(tree.tiles.insert_container(column));
+        }
+    }
+    Some(tree)
+}
+
+/// The panes of a layout, each once, under one root and with nothing else; `None` = damaged.
+fn sound_panes(tree: &Tree<Pane>) -> Option<Vec<Pane>> {
     let mut found = Vec::new();
     let mut seen = HashSet::new();
     let mut next: Vec<TileId> = tree.root.into_iter().collect();
     while let Some(id) = next.pop() {
         // A tile met twice is a loop, or a tile with two parents; a hidden one is lost.
         if !seen.insert(id) || seen.len() > MOST_TILES || !tree.is_visible(id) {
-            return false;
+            return None;
         }
         match tree.tiles.get(id) {
+            Some(Tile::Pane(pane)) if found.contains(pane) => return None,
             Some(Tile::Pane(pane)) => found.push(*pane),
             Some(Tile::Container(container)) if sound(container) => {
                 next.extend(container.children_vec());
             }
-            Some(Tile::Container(_)) => return false,
-            None => return false,
+            Some(Tile::Container(_)) | None => return None,
         }
     }
-    found.len() == Pane::ALL.len() && Pane::ALL.iter().all(|pane| found.contains(pane))
+    // Without the two views nobody would know it for theirs.
+    let views = [Pane::Draft, Pane::Cloth];
+    views
+        .iter()
+        .all(|pane| found.contains(pane))
+        .then_some(found)
 }
 
 /// Whether every part of a container has some room.
@@ -199,13 +232,30 @@ impl Behavior<Pane> for Shown<'_> {
 mod tests {
     use super::*;
 
+    fn without(panes: &[Pane]) -> Tree<Pane> {
+        let mut tree = usual();
+        for pane in panes {
+            let tile = tree.tiles.find_pane(pane).expect("a pane");
+            tree.remove_recursively(tile);
+        }
+        tree
+    }
+
     #[test]
-    fn the_usual_layout_is_whole_and_a_damaged_one_is_not_taken() {
-        assert!(whole(&usual()));
-        let mut without_log = usual();
-        let log = without_log.tiles.find_pane(&Pane::Log).expect("a log");
-        without_log.remove_recursively(log);
-        assert!(!whole(&without_log));
+    fn a_damaged_layout_is_not_taken() {
+        assert!(sound_panes(&usual()).is_some_and(|panes| panes.len() == Pane::ALL.len()));
+        assert!(completed(without(&[Pane::Cloth])).is_none());
+
+        let mut twice = usual();
+        let again = twice.tiles.insert_pane(Pane::Log);
+        let log = twice.tiles.find_pane(&Pane::Log).expect("a log");
+        let tabs = twice.tiles.parent_of(log);
+        let tabs = tabs.or(twice.tiles.parent_of(again)).expect("tabs");
+        if let Some(Tile::Container(container)) = twice.tiles.get_mut(tabs) {
+            container.add_child(again);
+            container.add_child(log);
+        }
+        assert!(completed(twice).is_none());
 
         let mut looped = usual();
         let (root, views) = (
@@ -219,7 +269,37 @@ mod tests {
         if let Some(Tile::Container(container)) = looped.tiles.get_mut(views) {
             container.add_child(root);
         }
-        assert!(!whole(&looped));
+        assert!(completed(looped).is_none());
+    }
+
+    #[test]
+    fn a_layout_from_before_a_pane_keeps_what_was_moved() {
+        let below: Vec<Pane> = (Pane::ALL.iter().copied())
+            .filter(|pane| !matches!(pane, Pane::Draft | Pane::Cloth))
+            .collect();
+        // One pane is new, and, where there were no tabs yet, all of them.
+        for new in [&below[..1], &below[..]] {
+            let mut old = without(new);
+            let draft = old.tiles.find_pane(&Pane::Draft).expect("a draft");
+            let views = old.tiles.parent_of(draft).expect("views");
+            if let Some(Tile::Container(Container::Linear(linear))) = old.tiles.get_mut(views) {
+                linear.shares.set_share(draft, 3.5);
+            }
+            let kept = KeptLayout {
+                version: VERSION,
+                tree: old,
+            };
+            let tree = Layout::from_kept(Some(kept)).tree;
+            let panes = sound_panes(&tree).expect("sound");
+            assert!(
+                Pane::ALL.iter().all(|pane| panes.contains(pane)),
+                "{panes:?}"
+            );
+            let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get(views) else {
+                panic!("the views are gone")
+            };
+            assert!((linear.shares[draft] - 3.5).abs() < 1e-6);
+        }
     }
 
     #[test]

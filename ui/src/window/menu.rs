@@ -12,7 +12,9 @@ use pickglass::text::visible;
 use super::cloth::sheet::Kind as SheetKind;
 use super::dialog;
 use super::worker::{LONGEST, Quality};
-use crate::command_table::{Command, DraftLayout, Menu, Row, TABLE, Tool};
+use crate::command_table::{
+    ClothCommand, Command, DraftLayout, Menu, Row, Switch, TABLE, Tool, WeaveCommand, ZoomCommand,
+};
 use crate::tokens::{self, Palette};
 
 /// What was chosen.
@@ -68,12 +70,12 @@ impl Situation<'_> {
             | Command::Shortcuts => true,
             Command::Undo => self.undo.is_some(),
             Command::Redo => self.redo.is_some(),
-            Command::Cut
-            | Command::Copy
-            | Command::Clear
-            | Command::Deselect
-            | Command::FillSelection
-            | Command::CropToSelection => self.open && self.selection,
+            Command::Weave(WeaveCommand::Cut)
+            | Command::Weave(WeaveCommand::Copy)
+            | Command::Weave(WeaveCommand::Clear)
+            | Command::Weave(WeaveCommand::Deselect)
+            | Command::Weave(WeaveCommand::FillSelection)
+            | Command::Weave(WeaveCommand::CropToSelection) => self.open && self.selection,
             Command::NextColourway
             | Command::PreviousColourway
             | Command::ContactSheet
@@ -81,7 +83,7 @@ impl Situation<'_> {
             Command::Colourway(place) => {
                 self.open && self.colourways > 0 && usize::from(place) <= self.colourways + 1
             }
-            Command::ReferenceShown | Command::ReferenceFit => {
+            Command::Switch(Switch::ReferenceShown) | Command::Switch(Switch::ReferenceFit) => {
                 self.open && self.reference.is_some()
             }
             _ => self.open,
@@ -91,19 +93,19 @@ impl Situation<'_> {
     /// Whether a command stands for something that is on.
     fn on(&self, command: Command) -> bool {
         match command {
-            Command::Look(view) => view == self.view,
-            Command::Pause => self.paused,
+            Command::Cloth(ClothCommand::Look(view)) => view == self.view,
+            Command::Cloth(ClothCommand::Pause) => self.paused,
             Command::Use(tool) => tool == self.tool,
             Command::Arrange(arrangement) => arrangement == self.arrangement,
-            Command::Structure => self.structure_alone,
-            Command::GridLines => self.grid_lines,
-            Command::LongFloats => self.long_floats,
-            Command::Ghosts => self.ghosts,
-            Command::Navigator => self.navigator,
-            Command::SymmetryAcross => self.symmetry[0],
-            Command::SymmetryAlong => self.symmetry[1],
-            Command::SymmetrySteps => self.steps,
-            Command::ReferenceShown => self.reference == Some(true),
+            Command::Switch(Switch::Structure) => self.structure_alone,
+            Command::Switch(Switch::GridLines) => self.grid_lines,
+            Command::Switch(Switch::LongFloats) => self.long_floats,
+            Command::Switch(Switch::Ghosts) => self.ghosts,
+            Command::Switch(Switch::Navigator) => self.navigator,
+            Command::Switch(Switch::SymmetryAcross) => self.symmetry[0],
+            Command::Switch(Switch::SymmetryAlong) => self.symmetry[1],
+            Command::Switch(Switch::SymmetrySteps) => self.steps,
+            Command::Switch(Switch::ReferenceShown) => self.reference == Some(true),
             Command::ContactSheet => self.sheet == Some(SheetKind::All),
             Command::SideBySide => self.sheet == Some(SheetKind::Two),
             _ => false,
@@ -286,9 +288,9 @@ pub fn pressed(ctx: &egui::Context) -> Option<(Command, usize)> {
 fn meant(event: &egui::Event, typing: bool) -> Option<Command> {
     match event {
         // Systems send cut, copy and paste as events of their own, not as keys.
-        egui::Event::Copy if !typing => Some(Command::Copy),
-        egui::Event::Cut if !typing => Some(Command::Cut),
-        egui::Event::Paste(_) if !typing => Some(Command::Paste),
+        egui::Event::Copy if !typing => Some(Command::Weave(WeaveCommand::Copy)),
+        egui::Event::Cut if !typing => Some(Command::Weave(WeaveCommand::Cut)),
+        egui::Event::Paste(_) if !typing => Some(Command::Weave(WeaveCommand::Paste)),
         egui::Event::Key {
             key,
             pressed: true,
@@ -330,30 +332,30 @@ pub fn goes_on(command: Command) -> bool {
         command,
         Command::Undo
             | Command::Redo
-            | Command::Roll(_)
+            | Command::Weave(WeaveCommand::Roll(_))
             | Command::Use(_)
             | Command::SwapColours
-            | Command::SymmetryAcross
-            | Command::SymmetryAlong
-            | Command::SymmetrySteps
+            | Command::Switch(Switch::SymmetryAcross)
+            | Command::Switch(Switch::SymmetryAlong)
+            | Command::Switch(Switch::SymmetrySteps)
             | Command::NextColourway
             | Command::PreviousColourway
             | Command::Colourway(_)
-            | Command::Look(_)
-            | Command::TurnOver
-            | Command::Straighten
-            | Command::Orbit(_)
-            | Command::Pan(_)
-            | Command::Fit
-            | Command::ActualSize
-            | Command::ZoomIn
-            | Command::ZoomOut
-            | Command::Structure
-            | Command::GridLines
-            | Command::LongFloats
-            | Command::Ghosts
-            | Command::Navigator
-            | Command::Pause
+            | Command::Cloth(ClothCommand::Look(_))
+            | Command::Cloth(ClothCommand::TurnOver)
+            | Command::Cloth(ClothCommand::Straighten)
+            | Command::Cloth(ClothCommand::Orbit(_))
+            | Command::Cloth(ClothCommand::Pan(_))
+            | Command::Zoom(ZoomCommand::Fit)
+            | Command::Zoom(ZoomCommand::ActualSize)
+            | Command::Zoom(ZoomCommand::In)
+            | Command::Zoom(ZoomCommand::Out)
+            | Command::Switch(Switch::Structure)
+            | Command::Switch(Switch::GridLines)
+            | Command::Switch(Switch::LongFloats)
+            | Command::Switch(Switch::Ghosts)
+            | Command::Switch(Switch::Navigator)
+            | Command::Cloth(ClothCommand::Pause)
     )
 }
 
@@ -470,7 +472,7 @@ mod tests {
             of(Key::P, Modifiers::NONE),
             Some(Command::Use(Tool::Pencil))
         );
-        assert_eq!(of(Key::P, shift), Some(Command::Pause));
+        assert_eq!(of(Key::P, shift), Some(Command::Cloth(ClothCommand::Pause)));
         assert_eq!(of(Key::P, Modifiers::COMMAND), Some(Command::Print));
         assert_eq!(of(Key::Z, shift), Some(Command::Redo));
         assert_eq!(
@@ -478,7 +480,7 @@ mod tests {
             Some(Command::Redo)
         );
         // A sign that is typed with Shift on some keyboards.
-        assert_eq!(of(Key::Plus, shift), Some(Command::ZoomIn));
+        assert_eq!(of(Key::Plus, shift), Some(Command::Zoom(ZoomCommand::In)));
         assert_eq!(of(Key::R, Modifiers::ALT), None);
         assert_eq!(command_of(Key::P, Modifiers::NONE, true), None);
     }

@@ -9,7 +9,7 @@ use super::asking::Next;
 use super::cloth::sheet::Kind as SheetKind;
 use super::panes::Pane;
 use super::settings_form::SettingsForm;
-use crate::command_table::Command;
+use crate::command_table::{Command, Switch, ZoomCommand};
 
 impl App {
     /// Lights the cloth by a preset.
@@ -81,10 +81,15 @@ impl App {
                     self.draft.focus(ctx);
                 }
             }
-            Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut
-                if !self.preview.in_use() =>
-            {
-                self.draft.obey(command);
+            Command::Zoom(command) if self.preview.in_use() => self.preview.zoom_as(command),
+            Command::Zoom(command) => self.draft.zoom_as(command),
+            Command::Cloth(command) => self.preview.obey(command),
+            Command::Switch(switch) => self.switch(switch),
+            Command::Weave(command) => self.weave(ctx, command),
+            Command::Arrange(arrangement) => {
+                self.draft.show.arrangement = arrangement;
+                self.settings.arrangement = arrangement;
+                self.draft.zoom_as(ZoomCommand::Fit);
             }
             Command::Reference => self.files.ask_reference(ctx),
             Command::NextColourway => self.colourway_beside(1),
@@ -97,11 +102,6 @@ impl App {
             Command::SwapColours => {
                 self.draft.yarns.swap(0, 1);
                 self.draft.regions.swap(0, 1);
-            }
-            _ => {
-                if !self.preview.obey(command) && !self.toggle(command) {
-                    self.weave(ctx, command);
-                }
             }
         }
     }
@@ -139,36 +139,28 @@ impl App {
         self.rework(|session| session.document.undo());
     }
 
-    /// Commands that turn something on or off; false for any other.
-    pub(super) fn toggle(&mut self, command: Command) -> bool {
+    /// Turns something on that was off, or off.
+    fn switch(&mut self, switch: Switch) {
         let (show, symmetry) = (&mut self.draft.show, &mut self.draft.symmetry);
-        let flag = match command {
-            Command::Structure => &mut show.structure_alone,
-            Command::GridLines => &mut show.grid_lines,
-            Command::LongFloats => &mut show.long_floats,
-            Command::Ghosts => &mut show.ghosts,
-            Command::Navigator => &mut show.navigator,
-            Command::SymmetryAcross => &mut symmetry[0],
-            Command::SymmetryAlong => &mut symmetry[1],
-            Command::SymmetrySteps => &mut self.draft.steps.on,
-            Command::ReferenceShown | Command::ReferenceFit => {
-                let Some(reference) = &mut self.draft.reference else {
-                    return true;
-                };
-                match command {
-                    Command::ReferenceShown => &mut reference.shown,
-                    _ => &mut reference.window_open,
-                }
-            }
-            Command::Arrange(arrangement) => {
-                show.arrangement = arrangement;
-                self.settings.arrangement = arrangement;
-                self.draft.obey(Command::Fit);
-                return true;
-            }
-            _ => return false,
+        let reference = self.draft.reference.as_mut();
+        let flag = match switch {
+            Switch::Structure => &mut show.structure_alone,
+            Switch::GridLines => &mut show.grid_lines,
+            Switch::LongFloats => &mut show.long_floats,
+            Switch::Ghosts => &mut show.ghosts,
+            Switch::Navigator => &mut show.navigator,
+            Switch::SymmetryAcross => &mut symmetry[0],
+            Switch::SymmetryAlong => &mut symmetry[1],
+            Switch::SymmetrySteps => &mut self.draft.steps.on,
+            Switch::ReferenceShown => match reference {
+                Some(reference) => &mut reference.shown,
+                None => return,
+            },
+            Switch::ReferenceFit => match reference {
+                Some(reference) => &mut reference.window_open,
+                None => return,
+            },
         };
         *flag = !*flag;
-        true
     }
 }

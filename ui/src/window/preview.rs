@@ -23,7 +23,7 @@ use super::laid::Laid;
 use super::toasts::Grade;
 use super::view::ClothView;
 use super::worker::{Aim, Building, ClothWorker, Phase, PreviewRequest, Quality};
-use crate::command_table::{Command, Toward};
+use crate::command_table::{ClothCommand, Toward, ZoomCommand};
 use crate::tokens::{self, Palette};
 
 /// One step of the zoom keys.
@@ -241,40 +241,44 @@ impl Preview {
         }
     }
 
-    /// Does what a command of the view menu says; false if it is none of the cloth's.
-    pub fn obey(&mut self, command: Command) -> bool {
+    /// Looks at the cloth as a command says.
+    pub fn obey(&mut self, command: ClothCommand) {
         match command {
-            Command::Look(view) => {
+            ClothCommand::Look(view) => {
                 self.view = view;
                 self.eye = None;
                 self.fit = false;
                 self.cloth_view = None;
             }
-            Command::Fit => {
+            ClothCommand::Pause if self.paused => self.resume(),
+            ClothCommand::Pause => self.pause(),
+            ClothCommand::TurnOver => self.turn_over(),
+            ClothCommand::Straighten => self.straighten(),
+            ClothCommand::Orbit(toward) => self.turn_by(step(toward) * TURN_STEP),
+            ClothCommand::Pan(toward) => {
+                let by = step(toward) * vec2(-1.0, 1.0) * self.pane_size * KEY_STEP;
+                self.rescale(|view| view.pan(by));
+            }
+        }
+    }
+
+    /// Shows the cloth as large as a command says.
+    pub fn zoom_as(&mut self, command: ZoomCommand) {
+        match command {
+            ZoomCommand::Fit => {
                 if !self.view.pose(self.turned).back {
                     self.view = View::Face;
                 }
                 self.fit = true;
                 self.cloth_view = None;
             }
-            Command::ActualSize => {
+            ZoomCommand::ActualSize => {
                 let actual = self.mm_per_point;
                 self.rescale(|view| view.mm_per_point = actual);
             }
-            Command::ZoomIn => self.zoom(ZOOM_STEP),
-            Command::ZoomOut => self.zoom(1.0 / ZOOM_STEP),
-            Command::Pause if self.paused => self.resume(),
-            Command::Pause => self.pause(),
-            Command::TurnOver => self.turn_over(),
-            Command::Straighten => self.straighten(),
-            Command::Orbit(toward) => self.turn_by(step(toward) * TURN_STEP),
-            Command::Pan(toward) => {
-                let by = step(toward) * vec2(-1.0, 1.0) * self.pane_size * KEY_STEP;
-                self.rescale(|view| view.pan(by));
-            }
-            _ => return false,
+            ZoomCommand::In => self.zoom(ZOOM_STEP),
+            ZoomCommand::Out => self.zoom(1.0 / ZOOM_STEP),
         }
-        true
     }
 
     /// Seconds since the picture was asked for, while the worker is at it.

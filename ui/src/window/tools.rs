@@ -11,7 +11,7 @@ use super::focus;
 use super::icons;
 use super::panes::Pane;
 use super::typing;
-use crate::command_table::{Command, Tool, row_of};
+use crate::command_table::{Command, Switch, Tool, row_of};
 use crate::tokens::{self, Palette};
 
 /// Side of a tool's button.
@@ -91,9 +91,12 @@ fn sign_button(
 fn mirror_ui(ui: &mut egui::Ui, draft: &mut DraftPane) {
     ui.label(RichText::new("Mirror").small());
     ui.horizontal(|ui| {
-        for (axis, command) in [Command::SymmetryAcross, Command::SymmetryAlong]
-            .into_iter()
-            .enumerate()
+        for (axis, command) in [
+            Command::Switch(Switch::SymmetryAcross),
+            Command::Switch(Switch::SymmetryAlong),
+        ]
+        .into_iter()
+        .enumerate()
         {
             let Some(row) = row_of(command) else { continue };
             let sign = |painter: &egui::Painter, rect, ink| icons::mirror(painter, rect, axis, ink);
@@ -107,7 +110,7 @@ fn mirror_ui(ui: &mut egui::Ui, draft: &mut DraftPane) {
 
 /// Whether painting goes on in steps, and of how many ends and picks.
 fn steps_ui(ui: &mut egui::Ui, draft: &mut DraftPane, document: &Document) {
-    let Some(row) = row_of(Command::SymmetrySteps) else {
+    let Some(row) = row_of(Command::Switch(Switch::SymmetrySteps)) else {
         return;
     };
     let steps = &mut draft.steps;

@@ -5,11 +5,11 @@ use pickglass::edit::{Cells, Clip, Edit, Rect};
 
 use super::app::App;
 use super::forms::Form;
-use crate::command_table::{Command, DraftLayout, Tool, Toward};
+use crate::command_table::{DraftLayout, Tool, Toward, WeaveCommand};
 
 impl App {
     /// Commands that change the weave, and those of the clipboard.
-    pub(super) fn weave(&mut self, ctx: &egui::Context, command: Command) {
+    pub(super) fn weave(&mut self, ctx: &egui::Context, command: WeaveCommand) {
         let Some(session) = &self.session else {
             return;
         };
@@ -18,8 +18,9 @@ impl App {
         let (ends, picks) = (design.ends(), design.picks());
         let selection = self.draft.selection();
         let selected = selection.map(|rect| Cells::of_rect(ends, picks, rect));
+        use WeaveCommand as Do;
         let edit = match command {
-            Command::SelectAll => {
+            Do::SelectAll => {
                 let (end, pick) = (0, 0);
                 self.draft.select(Some(Rect {
                     end,
@@ -29,11 +30,11 @@ impl App {
                 }));
                 return;
             }
-            Command::Deselect => {
+            Do::Deselect => {
                 self.draft.select(None);
                 return;
             }
-            Command::Copy | Command::Cut => {
+            Do::Copy | Do::Cut => {
                 let clip = selected
                     .as_ref()
                     .and_then(|cells| Clip::copy(document, cells));
@@ -41,33 +42,33 @@ impl App {
                 ctx.copy_text(clip_text(clip.weave()));
                 self.draft.copy(clip);
                 match (command, selected) {
-                    (Command::Cut, Some(cells)) => Edit::Paint {
+                    (Do::Cut, Some(cells)) => Edit::Paint {
                         cells,
                         warp_up: false,
                     },
                     _ => return,
                 }
             }
-            Command::Paste => {
+            Do::Paste => {
                 self.paste(ctx);
                 return;
             }
-            Command::Clear => match selected {
+            Do::Clear => match selected {
                 Some(cells) => Edit::Paint {
                     cells,
                     warp_up: false,
                 },
                 None => return,
             },
-            Command::Invert => match selected {
+            Do::Invert => match selected {
                 Some(cells) => Edit::Flip(cells),
                 None => Edit::Invert,
             },
-            Command::MirrorAcross => Edit::Mirror(Direction::Warp),
-            Command::MirrorAlong => Edit::Mirror(Direction::Weft),
-            Command::TurnHalf => Edit::Rotate(2),
-            Command::TurnQuarter => Edit::Rotate(1),
-            Command::Roll(toward) => {
+            Do::MirrorAcross => Edit::Mirror(Direction::Warp),
+            Do::MirrorAlong => Edit::Mirror(Direction::Weft),
+            Do::TurnHalf => Edit::Rotate(2),
+            Do::TurnQuarter => Edit::Rotate(1),
+            Do::Roll(toward) => {
                 // As it is seen: of a turned cloth the next end lies at the left.
                 let way = if self.draft.turned() { -1 } else { 1 };
                 let (ends, picks) = match toward {
@@ -78,12 +79,12 @@ impl App {
                 };
                 Edit::Roll { ends, picks }
             }
-            Command::Resize => return self.asking.fill_in(Form::size(design)),
-            Command::Repeat => return self.asking.fill_in(Form::repeat(design)),
-            Command::StampWeave => {
+            Do::Resize => return self.asking.fill_in(Form::size(design)),
+            Do::Repeat => return self.asking.fill_in(Form::repeat(design)),
+            Do::StampWeave => {
                 return self.asking.fill_in(Form::Stamp("2/2 twill".to_owned()));
             }
-            Command::FillSelection => match (selected, selection, self.draft.clip()) {
+            Do::FillSelection => match (selected, selection, self.draft.clip()) {
                 (Some(cells), Some(rect), Some(clip)) => {
                     clip.stamp(cells, (rect.end.into(), rect.pick.into()))
                 }
@@ -92,8 +93,8 @@ impl App {
                     return self.warn(what, "The design is as it was.");
                 }
             },
-            Command::Words => return self.asking.fill_in(Form::words(design)),
-            Command::Loom => {
+            Do::Words => return self.asking.fill_in(Form::words(design)),
+            Do::Loom => {
                 match Form::loom(design) {
                     Some(form) => self.asking.fill_in(form),
                     None => self.warn(
@@ -103,19 +104,19 @@ impl App {
                 }
                 return;
             }
-            Command::CropToSelection => match selection {
+            Do::CropToSelection => match selection {
                 Some(rect) => Edit::Crop(rect),
                 None => return,
             },
-            Command::Repeat2 => Edit::Tile {
+            Do::Repeat2 => Edit::Tile {
                 across: 2,
                 along: 2,
             },
-            Command::RepeatMore => return self.asking.fill_in(Form::Tile([2, 2])),
-            Command::ClearCorrections => {
+            Do::RepeatMore => return self.asking.fill_in(Form::Tile([2, 2])),
+            Do::ClearCorrections => {
                 Edit::ClearCorrections(selected.unwrap_or_else(|| Cells::all(ends, picks)))
             }
-            Command::DeriveDraft => {
+            Do::DeriveDraft => {
                 if self.draft.show.arrangement == DraftLayout::Jacquard {
                     self.draft.show.arrangement = match self.settings.arrangement {
                         DraftLayout::Jacquard => DraftLayout::Us,
@@ -124,8 +125,7 @@ impl App {
                 }
                 Edit::DeriveDraft { after: None }
             }
-            Command::BecomeJacquard => Edit::BecomeJacquard { then: None },
-            _ => return,
+            Do::BecomeJacquard => Edit::BecomeJacquard { then: None },
         };
         self.edit(edit);
     }

@@ -12,7 +12,7 @@ use super::areas::Areas;
 use super::bands::{self, Band};
 use super::grid::CellGrid;
 use super::zone::{Cell, Field, Touch};
-use crate::command_table::{Command, Tool, row_of};
+use crate::command_table::{Command, Tool, WeaveCommand, ZoomCommand, row_of};
 
 /// Points of a wheel's turn that make one step of zoom.
 const WHEEL_STEP: f32 = 40.0;
@@ -21,13 +21,13 @@ const WHEEL_STEP: f32 = 40.0;
 const CANVAS_MENU: [Command; 9] = [
     Command::Undo,
     Command::Redo,
-    Command::Cut,
-    Command::Copy,
-    Command::Paste,
-    Command::SelectAll,
-    Command::Clear,
-    Command::Invert,
-    Command::Fit,
+    Command::Weave(WeaveCommand::Cut),
+    Command::Weave(WeaveCommand::Copy),
+    Command::Weave(WeaveCommand::Paste),
+    Command::Weave(WeaveCommand::SelectAll),
+    Command::Weave(WeaveCommand::Clear),
+    Command::Weave(WeaveCommand::Invert),
+    Command::Zoom(ZoomCommand::Fit),
 ];
 
 impl DraftPane {

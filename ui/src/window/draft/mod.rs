@@ -27,7 +27,7 @@ use pickglass::edit::{Change, Clip, Document, Rect as Crossings};
 use super::action::{Action, Button, Mark};
 use super::laid;
 use super::settings::Settings;
-use crate::command_table::{Command, DraftLayout, Tool};
+use crate::command_table::{Command, DraftLayout, Tool, ZoomCommand};
 use crate::tokens;
 use areas::Areas;
 use bands::Band;
@@ -321,13 +321,14 @@ impl DraftPane {
     }
 
     /// Does what a command of the view menu says.
-    pub fn obey(&mut self, command: Command) {
+    pub fn zoom_as(&mut self, command: ZoomCommand) {
         match (command, &mut self.look) {
-            (Command::Fit, look) => *look = None,
-            (Command::ActualSize, Some(look)) => look.actual(),
-            (Command::ZoomIn, Some(look)) => look.zoom(1, [0.0, 0.0]),
-            (Command::ZoomOut, Some(look)) => look.zoom(-1, [0.0, 0.0]),
-            _ => {}
+            (ZoomCommand::Fit, look) => *look = None,
+            (ZoomCommand::ActualSize, Some(look)) => look.actual(),
+            (ZoomCommand::In, Some(look)) => look.zoom(1, [0.0, 0.0]),
+            (ZoomCommand::Out, Some(look)) => look.zoom(-1, [0.0, 0.0]),
+            // It is fitted when it is shown first.
+            (ZoomCommand::ActualSize | ZoomCommand::In | ZoomCommand::Out, None) => {}
         }
     }
 

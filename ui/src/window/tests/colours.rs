@@ -6,7 +6,7 @@ use pickglass::design::{Colourway, Design, Srgb};
 use pickglass::edit::Edit;
 
 use super::{Window, build, builder, open, options, says, shows, wait_for};
-use crate::command_table::Command;
+use crate::command_table::{Command, Switch};
 use crate::opened::Opened;
 use crate::window::app::{App, AppOptions};
 use crate::window::settings::SettingsFile;
@@ -115,7 +115,9 @@ fn painting_goes_on_in_steps_and_too_small_ones_are_refused() {
         picks: 48,
     });
     window.state_mut().edit(Edit::BecomePattern);
-    window.state_mut().obey(&ctx, Command::SymmetrySteps);
+    window
+        .state_mut()
+        .obey(&ctx, Command::Switch(Switch::SymmetrySteps));
     window.state_mut().draft.steps.every = [16, 24];
     window.run_steps(3);
     assert!(shows(&window, "Step in ends") && shows(&window, "Step in picks"));

@@ -7,7 +7,7 @@ use egui_kittest::kittest::{By, NodeT, Queryable};
 
 use super::opening::open_by_path;
 use super::{TABBY, Window, build, builder, says, shows, wait_for};
-use crate::command_table::{Command, Tool};
+use crate::command_table::{Command, Tool, WeaveCommand};
 use crate::window::Pane;
 
 fn window(design: Option<&str>) -> Window {
@@ -205,9 +205,9 @@ fn a_click_beside_a_form_gives_nothing_up() {
     for command in [
         Command::ExportStill,
         Command::ExportVolume,
-        Command::Words,
-        Command::StampWeave,
-        Command::Resize,
+        Command::Weave(WeaveCommand::Words),
+        Command::Weave(WeaveCommand::StampWeave),
+        Command::Weave(WeaveCommand::Resize),
         Command::Print,
     ] {
         let mut window = window(Some("oxford"));

@@ -12,7 +12,7 @@ use super::files::type_path;
 use super::opening::open_by_path;
 use super::pictures::renderer;
 use super::{Window, builder, open, says, wait_for};
-use crate::command_table::{Command, DraftLayout};
+use crate::command_table::{ClothCommand, Command, DraftLayout, Switch, WeaveCommand};
 use crate::opened::Opened;
 use crate::window::Pane;
 use crate::window::session::blank;
@@ -42,17 +42,17 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
     ("blank", Some(""), |_, _| {}),
     ("blank scandinavian", Some(""), |window, _| {
         obey(window, Command::Arrange(DraftLayout::Scandinavian));
-        obey(window, Command::LongFloats);
+        obey(window, Command::Switch(Switch::LongFloats));
     }),
     ("draft", Some("default"), |window, _| {
-        obey(window, Command::Navigator);
+        obey(window, Command::Switch(Switch::Navigator));
     }),
     ("structure", Some("herringbone"), |window, _| {
-        obey(window, Command::Structure);
-        obey(window, Command::SelectAll);
+        obey(window, Command::Switch(Switch::Structure));
+        obey(window, Command::Weave(WeaveCommand::SelectAll));
     }),
     ("jacquard", Some("damask"), |window, _| {
-        obey(window, Command::Navigator);
+        obey(window, Command::Switch(Switch::Navigator));
     }),
     ("palette", Some("oxford"), |window, _| {
         obey(window, Command::Palette);
@@ -61,20 +61,22 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         obey(window, Command::Shortcuts);
     }),
     ("repeat", Some("oxford"), |window, _| {
-        obey(window, Command::Repeat);
+        obey(window, Command::Weave(WeaveCommand::Repeat));
     }),
     ("resize", Some("oxford"), |window, _| {
-        obey(window, Command::Resize);
+        obey(window, Command::Weave(WeaveCommand::Resize));
     }),
-    ("loom", Some(""), |window, _| obey(window, Command::Loom)),
+    ("loom", Some(""), |window, _| {
+        obey(window, Command::Weave(WeaveCommand::Loom))
+    }),
     ("words", Some("oxford"), |window, _| {
-        obey(window, Command::Words);
+        obey(window, Command::Weave(WeaveCommand::Words));
     }),
     ("stamp", Some("oxford"), |window, _| {
-        obey(window, Command::StampWeave);
+        obey(window, Command::Weave(WeaveCommand::StampWeave));
     }),
     ("unsaved", Some("oxford"), |window, _| {
-        obey(window, Command::Invert);
+        obey(window, Command::Weave(WeaveCommand::Invert));
         obey(window, Command::New);
     }),
     ("refused", Some(""), |window, _| {
@@ -159,7 +161,7 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         draw_cloth(window);
         window.get_by_label("Keep").click();
         window.run_steps(2);
-        obey(window, Command::TurnOver);
+        obey(window, Command::Cloth(ClothCommand::TurnOver));
         window.run_steps(3);
     }),
     ("contact sheet", Some("herringbone"), |window, _| {
@@ -180,7 +182,7 @@ fn obey(window: &mut Window, command: Command) {
 /// Has the cloth drawn, once.
 fn draw_cloth(window: &mut Window) {
     if window.state().preview.paused {
-        obey(window, Command::Pause);
+        obey(window, Command::Cloth(ClothCommand::Pause));
     }
     wait_for(window, "the cloth", |window| {
         window.state().preview.pane.shown.is_some()

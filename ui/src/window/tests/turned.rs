@@ -13,7 +13,7 @@ use pickglass::formats::{self, LoadOptions};
 use super::files::type_path;
 use super::pictures::renderer;
 use super::{Window, build, builder, open, says, wait_for};
-use crate::command_table::{Command, DraftLayout, Tool, Toward};
+use crate::command_table::{Command, DraftLayout, Tool, Toward, WeaveCommand};
 use crate::opened::Opened;
 use crate::window::laid::Laid;
 use crate::window::session::Session;
@@ -240,7 +240,7 @@ fn case_11_painting_selecting_and_arrows_go_where_they_point_in_every_layout() {
         );
 
         // What was copied is put where the pointer is.
-        obey(&mut window, Command::Copy);
+        obey(&mut window, Command::Weave(WeaveCommand::Copy));
         obey(&mut window, Command::Use(Tool::Stamp));
         let at = place(&window, (4, 4));
         drag(&mut window, at, at);
@@ -288,7 +288,7 @@ fn case_11_rolling_goes_where_it_says_in_every_layout() {
             let size = window.state().draft.cell() as f32;
             let beside = place(&window, (0, 0)) + egui::vec2(right, -up) * size;
             let (end, pick) = window.state().draft.crossing_at(beside);
-            obey(&mut window, Command::Roll(toward));
+            obey(&mut window, Command::Weave(WeaveCommand::Roll(toward)));
             let [end, pick] = [end, pick].map(|at| at.rem_euclid(8) as u32);
             assert!(drawdown(&window).get(end, pick), "{layout:?} {toward:?}");
         }
