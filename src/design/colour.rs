@@ -1,83 +1,26 @@
-//! CIELAB (D65) and CIEDE2000: how different two colours look.
-//!
-//! Written from the standards; the table of Sharma, Wu & Dalal (2005) is the oracle.
+//! CIELAB (D65) and CIEDE2000: how different two colours look. The table of Sharma, Wu &
+//! Dalal (2005) is the oracle of the difference.
 
 use glam::Vec3;
+use palette::color_difference::Ciede2000;
+use palette::convert::FromColorUnclamped;
+use palette::white_point::D65;
 
 /// A colour as L*, a*, b*.
 pub type Lab = [f64; 3];
 
-/// Linear Rec. 709 to XYZ (IEC 61966-2-1).
-const TO_XYZ: [[f64; 3]; 3] = [
-    [0.412_390_8, 0.357_584_3, 0.180_480_8],
-    [0.212_639_0, 0.715_168_7, 0.072_192_3],
-    [0.019_330_8, 0.119_194_8, 0.950_532_2],
-];
-
 /// CIELAB of linear Rec. 709 relative to the white (1, 1, 1), which is D65.
 pub fn lab(linear: Vec3) -> Lab {
-    let f = |t: f64| {
-        const EDGE: f64 = 6.0 / 29.0;
-        if t > EDGE.powi(3) {
-            t.cbrt()
-        } else {
-            t / (3.0 * EDGE * EDGE) + 4.0 / 29.0
-        }
-    };
-    let rgb = linear.to_array().map(f64::from);
-    let [x, y, z] = TO_XYZ.map(|row| {
-        let white: f64 = row.iter().sum();
-        let value: f64 = row.iter().zip(rgb).map(|(k, c)| k * c).sum();
-        f(value / white)
-    });
-    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    let [r, g, b] = linear.to_array().map(f64::from);
+    let lab: palette::Lab<D65, f64> =
+        palette::Lab::from_color_unclamped(palette::LinSrgb::new(r, g, b));
+    lab.into()
 }
 
 /// ΔE₀₀ of two colours (CIE 142-2001; Sharma, Wu & Dalal 2005), all weights 1.
-pub fn delta_e_00([l1, a1, b1]: Lab, [l2, a2, b2]: Lab) -> f64 {
-    let share = |c: f64| (c.powi(7) / (c.powi(7) + 25f64.powi(7))).sqrt();
-    let g = 0.5 * (1.0 - share(0.5 * (a1.hypot(b1) + a2.hypot(b2))));
-    let polar = |a: f64, b: f64| {
-        let a = a * (1.0 + g);
-        let hue = if a == 0.0 && b == 0.0 {
-            0.0
-        } else {
-            b.atan2(a).to_degrees().rem_euclid(360.0)
-        };
-        (a.hypot(b), hue)
-    };
-    let ((c1, h1), (c2, h2)) = (polar(a1, b1), polar(a2, b2));
-    let grey = c1 * c2 == 0.0;
-
-    let turn = match h2 - h1 {
-        _ if grey => 0.0,
-        turn if turn > 180.0 => turn - 360.0,
-        turn if turn < -180.0 => turn + 360.0,
-        turn => turn,
-    };
-    let dl = l2 - l1;
-    let dc = c2 - c1;
-    let dh = 2.0 * (c1 * c2).sqrt() * (0.5 * turn).to_radians().sin();
-
-    let l = 0.5 * (l1 + l2);
-    let c = 0.5 * (c1 + c2);
-    let h = match h1 + h2 {
-        sum if grey => sum,
-        sum if (h1 - h2).abs() <= 180.0 => 0.5 * sum,
-        sum if sum < 360.0 => 0.5 * (sum + 360.0),
-        sum => 0.5 * (sum - 360.0),
-    };
-    let cos = |degrees: f64| degrees.to_radians().cos();
-    let t = 1.0 - 0.17 * cos(h - 30.0) + 0.24 * cos(2.0 * h) + 0.32 * cos(3.0 * h + 6.0)
-        - 0.20 * cos(4.0 * h - 63.0);
-    let from_50 = (l - 50.0) * (l - 50.0);
-    let sl = 1.0 + 0.015 * from_50 / (20.0 + from_50).sqrt();
-    let sc = 1.0 + 0.045 * c;
-    let sh = 1.0 + 0.015 * c * t;
-    let rotation = 30.0 * (-((h - 275.0) / 25.0).powi(2)).exp();
-    let rt = -2.0 * share(c) * (2.0 * rotation).to_radians().sin();
-    let (l, c, h) = (dl / sl, dc / sc, dh / sh);
-    (l * l + c * c + h * h + rt * c * h).sqrt()
+pub fn delta_e_00(one: Lab, other: Lab) -> f64 {
+    let [one, other] = [one, other].map(palette::Lab::<D65, f64>::from);
+    one.difference(other)
 }
 
 #[cfg(test)]

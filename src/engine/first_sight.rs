@@ -271,7 +271,7 @@ impl FirstSight {
     /// The picture, with what each pixel shows: what a later one is compared with.
     ///
     /// # Errors
-    /// As [`Engine::draw`].
+    /// As [`Engine::expose`].
     pub fn look(&self, request: &StillRequest, job: &Job) -> Result<Sighted, StillError> {
         let design = coloured(&self.design, request)?;
         let camera = camera(&design, request)?;

@@ -80,7 +80,7 @@ fn case_02_an_exported_scene_uses_the_picture_unmirrored() {
             let towards = EnvironmentImage::direction(at[0], at[1]);
             side += towards * picture.radiance(towards).x;
         }
-        side.normalize()
+        side.normalize_or(Vec3::ZERO)
     };
     let (exported, own) = (bright(&sky), bright(&lamp));
     assert!(own.x > 0.5, "{own}");

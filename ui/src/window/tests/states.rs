@@ -67,7 +67,7 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         obey(window, Command::Weave(WeaveCommand::Resize));
     }),
     ("loom", Some(""), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::Loom))
+        obey(window, Command::Weave(WeaveCommand::Loom));
     }),
     ("words", Some("oxford"), |window, _| {
         obey(window, Command::Weave(WeaveCommand::Words));
