@@ -200,18 +200,21 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
         // What scattered last, and from where it was come upon.
         let mut last: Option<(Vertex, Vec3)> = None;
         loop {
+            // Free flight: to a fibre, to the sheet behind the cloth, or out of everything.
             let sheet = if PLANE {
                 self.plane.distance(&ray)
             } else {
                 f32::INFINITY
             };
             let (point, vertex) = match self.scatterer.collide(&ray, sheet, random, counters) {
+                // A walk that was given up counts as absorbed.
                 Some(hit) if hit.absorbed => {
                     if order == 0 {
                         sample.alpha = 1.0;
                     }
                     break;
                 }
+                // A fibre: its dye takes its share, and its yarn is remembered.
                 Some(hit) => {
                     let albedo = tally.albedo(self.scatterer, hit.voxel.optics);
                     if order == 0 {
@@ -226,6 +229,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                         Vertex::Fibre(hit.voxel.fibre(), hit.voxel.optics, mixed),
                     )
                 }
+                // The sheet: a diffuser, or black.
                 None if sheet < f32::INFINITY => {
                     sample.alpha = 1.0;
                     if self.plane.albedo == 0.0 {
@@ -236,6 +240,8 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                     point.z = self.plane.z;
                     (point, Vertex::Sheet(self.plane.facing))
                 }
+                // Out: the camera sees the background; a scattered path brings home the sky, by
+                // its share against having chosen that direction in the sky (Veach 1997).
                 None => {
                     let Some((vertex, wi)) = last else {
                         self.add_background(&ray, tally, &mut sample);
@@ -255,11 +261,13 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                     break;
                 }
             };
+            // One scattering more, if the order allows it.
             if order == self.max_order {
                 break;
             }
             order += 1;
             counters.scatterings += 1;
+            // Direct light of this scattering: the suns, and a direction chosen in the sky.
             let wi = -ray.direction;
             self.light_from_suns(
                 point, &vertex, wi, throughput, order, tally, random, counters,
@@ -269,6 +277,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                     point, &vertex, wi, throughput, order, tally, random, counters,
                 );
             }
+            // Russian roulette by what the path can still bring.
             if order >= self.roulette_order {
                 let survival = throughput.max_element().min(1.0);
                 if random.uniform() >= survival {
@@ -276,6 +285,7 @@ impl<S: Scatterer, E: Environment, const SHADOWS: bool, const PLANE: bool>
                 }
                 throughput /= survival;
             }
+            // The next direction, and with which density it was drawn.
             let wo = vertex.sample(wi, random.pair());
             if E::SAMPLED {
                 density = vertex.value(wi, wo);

@@ -13,6 +13,7 @@ use crate::window::Restarts;
 use pickglass::cloth::Region;
 use pickglass::engine::{Heading, LightChoice, RENDERERS, USUAL_SPP};
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
+use pickglass::formats::{self, Format};
 use pickglass::plan::EffectChoice;
 use pickglass::posterise::Fit;
 use pickglass::synthesis::Method;
@@ -178,9 +179,7 @@ pub struct ConvertArgs {
     /// A design (.ron), a draft, loom or image file, or a preset's name
     #[arg(value_name = "IN")]
     pub input: String,
-    /// The file to write; its ending chooses the format (.ron, .wif, .jc5, .png, .bmp, .tif
-    /// or .gif)
-    #[arg(value_name = "OUT")]
+    #[arg(value_name = "OUT", help = written())]
     pub output: PathBuf,
     /// What an image that is written shows [default: as --as says, else the weave]
     #[arg(long, value_name = "KIND", value_parser = values::named::<ImageContent>())]
@@ -287,6 +286,12 @@ pub struct SynthesizeArgs {
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+/// The formats that are written, for the help.
+fn written() -> String {
+    let endings = formats::endings_in_words(Format::is_written, " or ");
+    format!("The file to write; its ending chooses the format ({endings})")
 }
 
 /// The engines that there are, for the help.

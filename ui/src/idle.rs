@@ -6,16 +6,13 @@ use std::path::Path;
 use anyhow::bail;
 use pickglass::engine::{Renderer, StillRequest};
 use pickglass::formats::image::Encoding;
-use pickglass::formats::jc5;
+use pickglass::formats::{self, Kind, jc5};
 use pickglass::plan::{Effect, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
 
 use crate::cli::{ConvertArgs, ImageArgs, StillArgs};
 use crate::opened::head;
-
-/// Endings of images that are written.
-const IMAGES: [&str; 5] = ["png", "bmp", "tif", "tiff", "gif"];
 
 /// What of the image flags is given, by name.
 fn given(image: &ImageArgs) -> Vec<&'static str> {
@@ -49,7 +46,15 @@ pub fn in_reading(argument: &str, image: &ImageArgs) -> anyhow::Result<()> {
 pub fn in_converting(args: &ConvertArgs) -> anyhow::Result<()> {
     let ending = args.output.extension().unwrap_or_default();
     let ending = ending.to_string_lossy().to_ascii_lowercase();
-    let written = IMAGES.contains(&ending.as_str());
+    let format = formats::of_ending(&ending).filter(|format| format.is_written());
+    let written = format.is_some_and(|format| format.kind == Kind::Image);
+    let cards = format.is_some_and(|format| format.kind == Kind::Loom);
+    if !cards && (args.loom.like.is_some() || args.loom.loom.is_some()) {
+        bail!(
+            "{}: --like and --loom are for loom files: end the name in .jc5",
+            args.output.display()
+        );
+    }
     let out = [
         ("--write", args.write.is_some()),
         ("--out-black", args.out_black.is_some()),
@@ -65,7 +70,7 @@ pub fn in_converting(args: &ConvertArgs) -> anyhow::Result<()> {
         true => &["--as", "--convention", "--black", "--origin"],
         false => &[],
     };
-    refuse(&args.input, &args.image, followed, ending == "jc5")
+    refuse(&args.input, &args.image, followed, cards)
 }
 
 fn refuse(

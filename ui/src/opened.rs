@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use pickglass::design::{Design, Sett};
 use pickglass::formats::image::{ImageAs, ImageContent, ImageReading};
+use pickglass::formats::jc5::{Hooks, Loom};
 use pickglass::formats::{self, Imported, LoadOptions, MapFiles, SaveOptions, jc5};
 use pickglass::presets;
 
@@ -157,7 +158,21 @@ pub fn writing(args: &ConvertArgs) -> SaveOptions {
             .out_origin
             .or(args.image.origin)
             .or(args.image.convention.map(|maker| maker.reading().corner)),
+        loom: loom(args),
     }
+}
+
+/// The loom that cards are written for, where one is stated.
+fn loom(args: &ConvertArgs) -> Option<Loom> {
+    let hooks = match (&args.loom.like, &args.loom.loom) {
+        (Some(file), _) => Hooks::Like(file.clone()),
+        (None, Some(name)) => Hooks::Named(name.clone()),
+        (None, None) => return None,
+    };
+    Some(Loom {
+        hooks,
+        face_down: args.image.face_down,
+    })
 }
 
 /// The first bytes of a file, by which its kind is known; none where it cannot be read.

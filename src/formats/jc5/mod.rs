@@ -18,12 +18,14 @@
 //!   those that never change as controls, the rest as selvedge. The reader says so.
 
 mod areas;
+mod loom;
 mod preset;
 mod read;
 mod write;
 
 pub use areas::FIELDS;
 pub use areas::{Area, CardFile, Role, parse, recognises};
+pub use loom::{Hooks, Loom};
 pub use preset::{LoomArea, LoomPreset, PRESETS, template};
 pub use read::{FACE_UP, read};
 pub use write::{WriteOptions, Written, write_into};

@@ -11,7 +11,7 @@ use pickglass::design::Design;
 use pickglass::edit::recovery::{self, Found};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::photo::{self, Photo};
-use pickglass::formats::{self, SaveOptions, jc5, output};
+use pickglass::formats::{self, Format, Kind, SaveOptions, jc5, output};
 use pickglass::print::{self, PdfOptions};
 use pickglass::text::with_causes;
 
@@ -25,15 +25,12 @@ use crate::tokens::{self, Palette};
 /// A dialog that ends sooner than this without a choice never opened, s.
 const NEVER_OPENED: f64 = 1.5;
 
-/// Endings that the dialog shows; files are known by their content.
-const OPENED: [&str; 15] = [
-    "ron", "wif", "dtx", "wpo", "dbw", "jc5", "png", "bmp", "tif", "tiff", "gif", "pcx", "jpg",
-    "jpeg", "webp",
-];
 /// Endings of pictures.
 const PICTURES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff"];
-/// Endings a draft is exported with.
-const EXPORTED: [&str; 6] = ["wif", "png", "bmp", "tif", "gif", "ron"];
+/// Whether drafts are exported in a format here: cards want a loom, which nobody is asked for.
+fn is_exported(format: &Format) -> bool {
+    format.is_written() && format.kind != Kind::Loom
+}
 
 /// What came of a file.
 pub enum FileEvent {
@@ -122,7 +119,8 @@ impl Purpose {
         match self {
             Self::Open => dialog
                 .set_title("Open a design, a draft or an image")
-                .add_filter("Designs, drafts and images", &OPENED)
+                // Files are known by their content.
+                .add_filter("Designs, drafts and images", &formats::endings(|_| true))
                 .add_filter("All files", &["*"])
                 .pick_file(),
             Self::Save => dialog
@@ -132,7 +130,7 @@ impl Purpose {
                 .save_file(),
             Self::Export => dialog
                 .set_title("Export the draft")
-                .add_filter("Drafts and loom images", &EXPORTED)
+                .add_filter("Drafts and loom images", &formats::endings(is_exported))
                 .set_file_name(proposed)
                 .save_file(),
             Self::Print => dialog

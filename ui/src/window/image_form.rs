@@ -4,15 +4,13 @@
 use std::path::{Path, PathBuf};
 
 use egui::RichText;
-use pickglass::formats::SaveOptions;
 use pickglass::formats::image::{Black, ImageContent};
+use pickglass::formats::{self, Kind, SaveOptions};
 use pickglass::text::visible;
 
 use super::{dialog, import};
 use crate::tokens::{self, Palette};
 
-/// Endings of images that a draft can be written as.
-const IMAGES: [&str; 5] = ["png", "bmp", "tif", "tiff", "gif"];
 /// What an image may show.
 const CONTENTS: [(ImageContent, &str, &str); 4] = [
     (
@@ -52,8 +50,8 @@ pub struct ImageForm {
 impl ImageForm {
     /// The form of the image at a path; `None` where the ending is that of no image.
     pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-        IMAGES.contains(&ending.as_str()).then(|| Self {
+        let format = formats::of_ending(&path.extension()?.to_string_lossy())?;
+        (format.kind == Kind::Image && format.is_written()).then(|| Self {
             path: path.to_owned(),
             options: SaveOptions::default(),
         })
@@ -71,7 +69,7 @@ impl ImageForm {
             ui.add_space(tokens::PAD);
             ui.horizontal(|ui| {
                 if ui.button("Write it").clicked() {
-                    answer = Some(Answer::Write(self.path.clone(), self.options));
+                    answer = Some(Answer::Write(self.path.clone(), self.options.clone()));
                 }
                 if ui.button("Cancel").clicked() {
                     answer = Some(Answer::Closed);
