@@ -225,14 +225,20 @@ fn describe(report: &StillReport, path: &Path, interrupted: bool) -> String {
             report.invalid_samples, report.majorant_violations
         ),
     };
+    // Not every engine has paths.
+    let (samples, rate) = match report.paths_per_second > 0.0 {
+        true => (
+            format!("{} spp{error}", report.spp),
+            format!(", {:.2} M paths/s", report.paths_per_second / 1e6),
+        ),
+        false => (report.renderer.clone(), String::new()),
+    };
     format!(
-        "wrote {} ({} x {}, {} spp{error}{level}, {:.1} s, {:.2} M paths/s{so_far}){wrong}",
+        "wrote {} ({} x {}, {samples}{level}, {:.1} s{rate}{so_far}){wrong}",
         out::shown(path),
         report.width,
         report.height,
-        report.spp,
         report.total_seconds,
-        report.paths_per_second / 1e6,
     )
 }
 
