@@ -204,7 +204,8 @@ pub(super) static SIGHT: Renderer = Renderer {
 const NAME: &str = "sight";
 
 fn make(making: &Making<'_>) -> Result<Box<dyn Engine>, StillError> {
-    let design = coloured(making.design, making.request)?;
+    // Colours are put on where it is drawn.
+    let design = Arc::clone(making.design);
     let drawdown = Arc::new(design.weave());
     Ok(Box::new(FirstSight::new(design, drawdown, Arc::default())))
 }

@@ -104,16 +104,16 @@ const fn image(
     notes: &'static str,
     recognises: fn(&[u8]) -> bool,
 ) -> Format {
-    Format {
+    let read = Reading::Any(designs::read_image);
+    row(
         name,
-        kind: Kind::Image,
         endings,
         notes,
-        fields: &[],
-        recognises: Recogniser::Bytes(recognises),
-        read: Reading::Any(designs::read_image),
-        write: None,
-    }
+        &[],
+        Recogniser::Bytes(recognises),
+        read,
+    )
+    .of_kind(Kind::Image)
 }
 
 /// A row of texts.
@@ -125,16 +125,8 @@ const fn text(
     recognises: fn(&[u8]) -> bool,
     read: Reader,
 ) -> Format {
-    Format {
-        name,
-        kind: Kind::Draft,
-        endings,
-        notes,
-        fields,
-        recognises: Recogniser::Beginning(recognises),
-        read: Reading::Any(read),
-        write: None,
-    }
+    let known = Recogniser::Beginning(recognises);
+    row(name, endings, notes, fields, known, Reading::Any(read))
 }
 
 /// A row of drafts of other programs.
@@ -146,14 +138,27 @@ const fn draft(
     recognises: fn(&[u8]) -> bool,
     read: SheetReader,
 ) -> Format {
+    let known = Recogniser::Beginning(recognises);
+    row(name, endings, notes, fields, known, Reading::Sheet(read))
+}
+
+/// A row of drafts that are read.
+const fn row(
+    name: &'static str,
+    endings: &'static [&'static str],
+    notes: &'static str,
+    fields: &'static [Table],
+    recognises: Recogniser,
+    read: Reading,
+) -> Format {
     Format {
         name,
         kind: Kind::Draft,
         endings,
         notes,
         fields,
-        recognises: Recogniser::Beginning(recognises),
-        read: Reading::Sheet(read),
+        recognises,
+        read,
         write: None,
     }
 }

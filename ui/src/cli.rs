@@ -125,9 +125,17 @@ pub struct ImageArgs {
     pub face_down: bool,
 }
 
+/// What is looked at and how it is read, as words of a command line.
+pub fn source_words(argument: &str, sett: &SettArgs, image: &ImageArgs) -> Vec<String> {
+    let mut words = vec![shell_word(argument).into_owned()];
+    words.extend(sett.words());
+    words.extend(image.words());
+    words
+}
+
 impl SettArgs {
     /// The words that say the same.
-    pub fn words(&self) -> Vec<String> {
+    fn words(&self) -> Vec<String> {
         let sett = self.sett.iter();
         sett.map(|sett| format!("--sett {}x{}", sett.ends_per_cm, sett.picks_per_cm))
             .collect()
@@ -136,7 +144,7 @@ impl SettArgs {
 
 impl ImageArgs {
     /// The words that say the same.
-    pub fn words(&self) -> Vec<String> {
+    fn words(&self) -> Vec<String> {
         fn word<T: Into<&'static str>>(flag: &str, value: Option<T>) -> Option<String> {
             value.map(|value| format!("{flag} {}", value.into()))
         }

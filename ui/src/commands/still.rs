@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use super::{note_warnings, seconds_json};
-use crate::cli::StillArgs;
+use crate::cli::{StillArgs, source_words};
 use crate::idle;
 use crate::interrupt::Interrupt;
 use crate::late::Late;
@@ -21,7 +21,6 @@ use pickglass::formats::volume::{self, VolumeFormat};
 use pickglass::job::Job;
 use pickglass::plan::{Settings, Subject};
 use pickglass::render::Backing;
-use pickglass::text::shell_word;
 
 /// Longer than anybody waits: no end at all.
 const LONGEST_SECONDS: f64 = 1e9;
@@ -279,10 +278,9 @@ fn report_json(report: &StillReport, interrupted: bool) -> Value {
 
 /// What is looked at and how it is read, as words of a command line.
 fn source(args: &StillArgs) -> String {
-    let voxel = args.voxel.map(|voxel| format!("--voxel {voxel}"));
-    let words = [shell_word(&args.design).into_owned()].into_iter();
-    let words = words.chain(args.sett.words()).chain(args.image.words());
-    words.chain(voxel).collect::<Vec<_>>().join(" ")
+    let mut words = source_words(&args.design, &args.sett, &args.image);
+    words.extend(args.voxel.map(|voxel| format!("--voxel {voxel}")));
+    words.join(" ")
 }
 
 /// What is asked for, before `backing` where nothing is said of that.

@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::{note_warnings, still};
-use crate::cli::WindowArgs;
+use crate::cli::{WindowArgs, source_words};
 use crate::idle;
 use crate::opened::{DEFAULT_PRESET, Opened};
 use crate::out;
@@ -15,7 +15,6 @@ use crate::window::{self, NoWindow, Start};
 use pickglass::engine::{StillRequest, Stop, reference};
 use pickglass::formats::output;
 use pickglass::render::Backing;
-use pickglass::text::shell_word;
 
 /// Where the picture goes when no window can open.
 const FALLBACK_PICTURE: &str = "cloth.png";
@@ -46,10 +45,8 @@ pub fn run(args: &WindowArgs) -> anyhow::Result<()> {
                 copy.display()
             )),
             None => {
-                let words = [shell_word(argument).into_owned()].into_iter();
-                let words = words.chain(args.sett.words()).chain(args.image.words());
-                let source = words.collect::<Vec<_>>().join(" ");
-                without_window(&opened, &reason, source, args.json)
+                let source = source_words(argument, &args.sett, &args.image);
+                without_window(&opened, &reason, source.join(" "), args.json)
             }
         },
         Err(NoWindow::Broken(error)) => Err(error),
