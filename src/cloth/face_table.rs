@@ -120,6 +120,11 @@ impl FaceTable {
         self.levels[0][(usize::from(key & 31) * TEXELS + y.min(last)) * TEXELS + x.min(last)]
     }
 
+    /// The mean of a crossing.
+    pub fn mean(&self, key: u8) -> Texel {
+        self.at(SIDES.len() - 1, key, 0.0, 0.0)
+    }
+
     /// Whether pixels are so much smaller than the finest texels, at this many a crossing,
     /// that texels would be seen as squares.
     pub fn shows_texels(pixels: f32) -> bool {

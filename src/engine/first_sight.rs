@@ -3,8 +3,8 @@
 //! Every crossing shows what its neighbourhood, its yarns, the light and the side looked
 //! at make of it: the places of [`FaceTable`], in the colours of
 //! [`colours_on_top`]. A crossing smaller than a pixel is its mean. What
-//! lies behind the cloth, hairs and the slant of a view are not shown; the path tracer
-//! brings them.
+//! lies behind the cloth is a sheet of paper, nothing, or the mean of more cloth; hairs and
+//! the slant of a view are not shown; the path tracer brings them.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -397,15 +397,16 @@ impl Sight<'_> {
                 };
                 here = crossing;
                 if let Some(crossing) = crossing {
-                    let (light, cover) = self.light(&crossing, u, v as f32);
                     places[column / self.samples] = self.place(&crossing, u, v as f32);
-                    let sum = &mut row[column / self.samples];
-                    *sum = (sum.0 + light, sum.1 + cover);
                 }
+                let (light, cover) = self.seen(crossing.as_ref(), u, v as f32);
+                let sum = &mut row[column / self.samples];
+                *sum = (sum.0 + light, sum.1 + cover);
             }
         }
-        for pixel in row {
-            *pixel = self.seen(*pixel, self.samples * self.samples);
+        let samples = (self.samples * self.samples) as f32;
+        for (light, cover) in row {
+            (*light, *cover) = (*light / cover.max(1e-6), *cover / samples);
         }
     }
 
@@ -433,8 +434,9 @@ impl Sight<'_> {
             here = crossing;
             if let Some(crossing) = crossing {
                 *shown = self.place(&crossing, u as f32, v as f32);
-                *pixel = self.seen(self.light(&crossing, u as f32, v as f32), 1);
             }
+            let (light, cover) = self.seen(crossing.as_ref(), u as f32, v as f32);
+            *pixel = (light / cover.max(1e-6), cover);
         }
     }
 
@@ -551,18 +553,29 @@ impl Sight<'_> {
         sum
     }
 
-    /// Light and cover of a pixel of so many samples, before what lies behind the cloth.
+    /// Light and cover of a place of a crossing, and of what lies behind it; no crossing: of
+    /// what lies behind the cloth.
     #[inline]
-    fn seen(&self, (light, cover): (Vec3, f32), samples: usize) -> (Vec3, f32) {
-        if !(cover > 0.0) {
-            return (Vec3::ZERO, 0.0);
+    fn seen(&self, crossing: Option<&Crossing>, u: f32, v: f32) -> (Vec3, f32) {
+        let (light, cover) = crossing.map_or((Vec3::ZERO, 0.0), |here| self.light(here, u, v));
+        let gap = 1.0 - cover;
+        match (self.backing, crossing) {
+            (Backing::None, _) | (Backing::Itself, None) => (light, cover),
+            (Backing::White, _) => (light + PAPER * gap, 1.0),
+            (Backing::Black, _) => (light, 1.0),
+            (Backing::Itself, Some(crossing)) if gap > 0.0 => {
+                (light + self.beneath(crossing) * gap, 1.0)
+            }
+            (Backing::Itself, Some(_)) => (light, 1.0),
         }
-        let (own, share) = (light / cover, cover / samples as f32);
-        match self.backing {
-            Backing::None => (own, share),
-            Backing::White => (own.lerp(Vec3::splat(PAPER), 1.0 - share), 1.0),
-            Backing::Black => (own * share, 1.0),
-            Backing::Itself => (own * (share + BENEATH * (1.0 - share)), 1.0),
-        }
+    }
+
+    /// Light of more of the same cloth, seen through a gap of a crossing.
+    fn beneath(&self, crossing: &Crossing) -> Vec3 {
+        let Some(table) = self.tables.get(usize::from(crossing.set)) else {
+            return Vec3::ZERO;
+        };
+        let (light, cover) = crossing.lit(table, table.mean(crossing.key));
+        light * (BENEATH / cover.max(1e-6))
     }
 }

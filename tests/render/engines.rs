@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use pickglass::design::Sett;
 use pickglass::engine::{
-    LightChoice, RENDERERS, StillRequest, Stop, reference, render_sheet, render_still,
+    LightChoice, RENDERERS, StillRequest, Stop, reference, render_sheet, render_still, renderer,
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::film::Picture;
 use pickglass::job::Job;
 use pickglass::presets;
+use pickglass::render::Backing;
+use pickglass::scene::View;
 
 fn request() -> StillRequest {
     StillRequest {
@@ -73,4 +76,33 @@ fn every_engine_makes_stills_sheets_and_exr() {
     };
     assert!((traced / sight - 1.0).abs() < 0.25, "{brightness:?}");
     assert_eq!(RENDERERS[0], reference());
+}
+
+/// What lies behind open cloth is seen through its gaps, by first sight as well.
+#[test]
+fn gaps_show_what_lies_behind() {
+    let open = Sett::per_cm(8.0, 8.0);
+    let design = presets::design("herringbone").unwrap().unwrap();
+    let design = Arc::new(design.with_sett(open).unwrap());
+    let sight = renderer("sight").unwrap();
+    let seen = |backing, view| {
+        let request = StillRequest {
+            backing,
+            view,
+            ..request()
+        };
+        let still = render_still(&design, &request, sight, &Job::new(), &mut |_| {}).unwrap();
+        let alpha = |pixel: &[f32; 4]| pixel[3];
+        let picture = still.picture();
+        let least = picture.pixels.iter().map(alpha).fold(1.0, f32::min);
+        (least, mean(&picture))
+    };
+    for view in [View::Face, View::Oblique] {
+        let (nothing, _) = seen(Backing::None, view);
+        assert_eq!(nothing, 0.0, "the control: gaps are open");
+        let backed = [Backing::White, Backing::Itself, Backing::Black].map(|b| seen(b, view));
+        assert!(backed.iter().all(|(least, _)| *least == 1.0), "{backed:?}");
+        let [white, itself, black] = backed.map(|(_, mean)| mean);
+        assert!(white > itself && itself > black, "{backed:?}");
+    }
 }
