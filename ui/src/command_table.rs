@@ -1,10 +1,12 @@
 //! Everything one can do in the window, once: menus, shortcuts, tooltips, the palette, the
 //! help sheet and the README's table are made from this list.
 
+use std::sync::LazyLock;
+
 use egui::{Key, KeyboardShortcut, Modifiers};
 use pickglass::scene::View;
 
-use crate::window::Pane;
+use crate::window::{Pane, panes};
 
 /// How a loom's parts are laid round the drawdown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -247,7 +249,8 @@ const fn ctrl_alt(key: Key) -> KeyboardShortcut {
     with(Modifiers::COMMAND.plus(Modifiers::ALT), key)
 }
 
-const fn alt(key: Key) -> KeyboardShortcut {
+/// Alt and a key.
+pub const fn alt(key: Key) -> KeyboardShortcut {
     with(Modifiers::ALT, key)
 }
 
@@ -259,7 +262,8 @@ const fn plain(key: Key) -> KeyboardShortcut {
     with(Modifiers::NONE, key)
 }
 
-const fn row(
+/// A row of the table.
+pub const fn row(
     command: Command,
     menu: Menu,
     label: &'static str,
@@ -282,8 +286,11 @@ const fn apart(mut row: Row) -> Row {
 }
 
 /// The table, in the order of the menus.
+pub static TABLE: LazyLock<Vec<Row>> = LazyLock::new(|| [ABOVE, panes::COMMANDS, BELOW].concat());
+
+/// What the table says before the panes, whose rows stand in their own.
 #[rustfmt::skip]
-pub const TABLE: &[Row] = &[
+const ABOVE: &[Row] = &[
     row(Command::New, Menu::File, "New", "A plain weave to start from", &[ctrl(Key::N)]),
     row(Command::Open, Menu::File, "Open…", "Open a design, a draft or an image", &[ctrl(Key::O)]),
     row(Command::OpenPath, Menu::File, "Open by path…", "Type or paste the path of a file", &[ctrl(Key::L)]),
@@ -392,15 +399,11 @@ pub const TABLE: &[Row] = &[
     apart(row(Command::Cloth(ClothCommand::Pause), Menu::View, "Pause refining", "Stop and resume the refining of the picture", &[shift(Key::P)])),
     row(Command::NextPane, Menu::View, "Draft or cloth", "Exchange the keyboard between draft and cloth", &[plain(Key::F6)]),
     row(Command::Theme, Menu::View, "Light or dark", "Change between the light and the dark theme", &[ctrl(Key::T)]),
+];
 
-    row(Command::Show(Pane::Floats), Menu::Panes, "Show floats", "Floats that are too long, one by one", &[alt(Key::Num1)]),
-    row(Command::Show(Pane::Yarns), Menu::Panes, "Show yarns", "Colour, count and family of each yarn, stripes, metres", &[alt(Key::Num2)]),
-    row(Command::Show(Pane::Colourways), Menu::Panes, "Show colourways", "Named sets of yarns for one structure, side by side", &[alt(Key::Num3)]),
-    row(Command::Show(Pane::Sett), Menu::Panes, "Show sett", "Ends and picks per cm or inch, reed, take-up, shrinkage", &[alt(Key::Num4)]),
-    row(Command::Show(Pane::Posterise), Menu::Panes, "Show posterising", "A picture in a few colours, each with a weave", &[alt(Key::Num5)]),
-    row(Command::Show(Pane::Section), Menu::Panes, "Show the section", "How the yarns pass over and under along an end or a pick", &[alt(Key::Num6)]),
-    row(Command::Show(Pane::History), Menu::Panes, "Show history", "All changes by name; a click goes back to one", &[alt(Key::Num7)]),
-    row(Command::Show(Pane::Log), Menu::Panes, "Show log", "All that was said, warnings and errors", &[alt(Key::Num8)]),
+/// What the table says after the panes.
+#[rustfmt::skip]
+const BELOW: &[Row] = &[
     apart(row(Command::Show(Pane::Draft), Menu::Panes, "Show draft", "Bring the draft to the front", &[])),
     row(Command::Show(Pane::Cloth), Menu::Panes, "Show cloth", "Bring the cloth to the front", &[]),
     apart(row(Command::ResetLayout, Menu::Panes, "Reset layout", "Put all panes back to their usual places", &[])),
@@ -445,7 +448,7 @@ fn spread(text: &str, typed: &str) -> Option<usize> {
 pub fn markdown() -> String {
     let names = egui::ModifierNames::NAMES;
     let mut text = String::from("| key | does |\n|---|---|\n");
-    for row in TABLE {
+    for row in TABLE.iter() {
         let keys: Vec<_> = (row.shortcuts.iter())
             .map(|shortcut| format!("`{}`", shortcut.format(&names, false)))
             .collect();

@@ -163,7 +163,7 @@ impl App {
                 Err(error) => return self.say(Grade::Error, with_causes(error.as_ref()), ""),
             }
         }
-        self.panes.posterise(ctx, path);
+        self.panes.read_picture(ctx, path);
         self.layout.bring(Pane::Posterise);
     }
 

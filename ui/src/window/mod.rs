@@ -33,7 +33,7 @@ mod menu;
 mod obey;
 mod pace;
 mod palette;
-mod panes;
+pub mod panes;
 mod picture;
 mod preview;
 mod session;

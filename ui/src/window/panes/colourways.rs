@@ -7,9 +7,11 @@ use pickglass::edit::{Document, Edit};
 use pickglass::text::visible;
 
 use super::swatches;
+use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::draft::picture_uv;
+
 use crate::window::{focus, typing};
 
 /// Side of a thumbnail, in pixels and points.
@@ -55,15 +57,9 @@ struct Thumbs {
     textures: Vec<egui::TextureHandle>,
 }
 
-impl Colourways {
-    /// Shows the list.
-    pub fn show(
-        &mut self,
-        ui: &mut egui::Ui,
-        document: &Document,
-        turned: bool,
-        actions: &mut Vec<Action>,
-    ) {
+impl PaneView for Colourways {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+        let document = shown.document;
         let design = document.design();
         self.draw_thumbs(ui.ctx(), document);
         let add = ui.button("Duplicate the yarns in use");
@@ -89,13 +85,25 @@ impl Colourways {
                 for (place, (at, name, yarns)) in all.into_iter().enumerate() {
                     ui.vertical(|ui| {
                         ui.set_width(2.0 * THUMB as f32);
-                        self.one_ui(ui, document, (place, at, name, yarns), turned, actions);
+                        self.one_ui(
+                            ui,
+                            document,
+                            (place, at, name, yarns),
+                            shown.turned,
+                            actions,
+                        );
                     });
                 }
             });
         });
     }
 
+    fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+impl Colourways {
     fn one_ui(
         &mut self,
         ui: &mut egui::Ui,

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use egui::{DragValue, RichText, ScrollArea};
 use pickglass::design::{FaceFloat, longest_floats};
-use pickglass::edit::Document;
 
 use super::later::Later;
+use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Mark};
 use crate::window::typing;
@@ -41,24 +41,9 @@ impl Default for Floats {
     }
 }
 
-#[cfg(test)]
-impl Floats {
-    pub fn with_limits(limits: [u32; 2]) -> Self {
-        Self {
-            limits,
-            ..Self::default()
-        }
-    }
-}
-
-impl Floats {
-    /// Forgets what was found.
-    pub fn forget(&mut self) {
-        self.found = Later::default();
-    }
-
-    /// Shows the list.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+impl PaneView for Floats {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+        let document = shown.document;
         let quiet = Palette::current(ui).quiet;
         let design = document.design();
         // An end floats over picks, a pick over ends.
@@ -108,6 +93,23 @@ impl Floats {
             });
     }
 
+    // Forgets what was found.
+    fn forget(&mut self) {
+        self.found = Later::default();
+    }
+}
+
+#[cfg(test)]
+impl Floats {
+    pub fn with_limits(limits: [u32; 2]) -> Self {
+        Self {
+            limits,
+            ..Self::default()
+        }
+    }
+}
+
+impl Floats {
     /// The limit in threads or mm; true when it was changed.
     fn limits_ui(&mut self, ui: &mut egui::Ui, pitch: [f32; 2]) -> bool {
         let before = self.limits;

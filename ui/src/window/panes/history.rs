@@ -1,9 +1,9 @@
 //! The history: every gesture by name; a click goes back to it.
 
 use egui::{RichText, ScrollArea};
-use pickglass::edit::Document;
 use pickglass::text::visible;
 
+use super::{PaneView, Shown};
 use crate::tokens::Palette;
 use crate::window::action::Action;
 
@@ -13,9 +13,9 @@ pub struct History {
     shown: Option<usize>,
 }
 
-impl History {
-    /// Shows it.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+impl PaneView for History {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+        let document = shown.document;
         let quiet = Palette::current(ui).quiet;
         let (entries, present) = (document.entries(), document.position());
         let megabytes = document.history_bytes() as f64 / f64::from(1 << 20);

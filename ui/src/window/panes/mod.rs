@@ -1,6 +1,6 @@
-//! The panes of the window. A pane is one file with a struct whose
-//! `show(&mut self, ui, document, actions)` draws it; [`Pane`] names them for the layout
-//! and [`Panes`] holds them. A new pane is one file, one variant and one field.
+//! The panes of the window. A pane is one file with a struct that is a [`PaneView`], and one
+//! row of the table here: the layout, the commands that show it, their keys and the settings
+//! come from the row. Draft and cloth are views of their own, which the window holds.
 
 mod colourways;
 mod columns;
@@ -22,129 +22,119 @@ mod yarns;
 
 use std::path::Path;
 
+use egui::{Key, Ui};
 use pickglass::edit::Document;
 use serde::{Deserialize, Serialize};
 
 use super::action::Action;
-use colourways::Colourways;
-use floats::Floats;
-use history::History;
-use log::Log;
-use posterise::Posterise;
-use section::Section;
-use sett::SettPane;
-use yarns::Yarns;
+use crate::command_table::{Command, Menu, Row, alt, row};
 
-/// A pane by name: what the layout moves about and writes into the settings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Pane {
-    Draft,
-    Cloth,
-    Floats,
-    Yarns,
-    Colourways,
-    Sett,
-    Posterise,
-    Section,
-    History,
-    Log,
-}
-
-impl Pane {
-    /// All panes, in the order of the usual tabs.
-    pub const ALL: [Self; 10] = [
-        Self::Draft,
-        Self::Cloth,
-        Self::Floats,
-        Self::Yarns,
-        Self::Colourways,
-        Self::Sett,
-        Self::Posterise,
-        Self::Section,
-        Self::History,
-        Self::Log,
-    ];
-
-    /// What its tab says.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Draft => "Draft",
-            Self::Cloth => "Cloth",
-            Self::Floats => "Floats",
-            Self::Yarns => "Yarns",
-            Self::Colourways => "Colourways",
-            Self::Sett => "Sett",
-            Self::Posterise => "Posterise",
-            Self::Section => "Cut",
-            Self::History => "History",
-            Self::Log => "Log",
-        }
-    }
-}
-
-/// The state of the panes below the views.
-#[derive(Default)]
-pub struct Panes {
+/// What a pane is shown.
+pub struct Shown<'s> {
+    pub document: &'s Document,
     /// The cloth is turned by 180°, as on the draft.
     pub turned: bool,
-    pub log: Log,
-    pub section: Section,
-    floats: Floats,
-    yarns: Yarns,
-    colourways: Colourways,
-    sett: SettPane,
-    posterise: Posterise,
-    history: History,
 }
 
-#[cfg(test)]
-impl Panes {
-    /// Ends and regions of the picture that was posterised.
-    pub fn posterised(&self) -> Option<(u32, usize)> {
-        self.posterise.made_of()
-    }
+/// One of the panes below the views.
+pub trait PaneView: Default {
+    /// Draws it; what the person asks for goes into `actions`.
+    fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, actions: &mut Vec<Action>);
+
+    /// Another design is open: forgets what was shown and typed of the one before. Units and
+    /// limits that were chosen stay.
+    fn forget(&mut self) {}
+}
+
+/// Makes [`Pane`], [`Panes`] and the commands that show panes from one row each: the name of
+/// its place and of its type, the name that layouts keep, what its tab says, the key that
+/// shows it with Alt if it has one, the words of the command and what that says.
+macro_rules! panes {
+    ($($place:ident: $State:ty, $Pane:ident, $tab:literal, [$($key:ident)?], $command:literal, $tip:literal;)*) => {
+        /// A pane by name: what the layout moves about and writes into the settings.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum Pane {
+            Draft,
+            Cloth,
+            $($Pane,)*
+        }
+
+        impl Pane {
+            /// How many there are.
+            const COUNT: usize = 2 + [$($tab),*].len();
+
+            /// All panes, in the order of the usual tabs.
+            pub const ALL: [Self; Self::COUNT] = [Self::Draft, Self::Cloth, $(Self::$Pane),*];
+
+            /// What its tab says.
+            pub fn title(self) -> &'static str {
+                match self {
+                    Self::Draft => "Draft",
+                    Self::Cloth => "Cloth",
+                    $(Self::$Pane => $tab,)*
+                }
+            }
+        }
+
+        /// The commands that show panes, as rows of the table of commands.
+        pub const COMMANDS: &[Row] = &[
+            $(row(Command::Show(Pane::$Pane), Menu::Panes, $command, $tip, &[$(alt(Key::$key))?]),)*
+        ];
+
+        /// The state of the panes below the views.
+        #[derive(Default)]
+        pub struct Panes {
+            /// The cloth is turned by 180°, as on the draft.
+            pub turned: bool,
+            $(pub(super) $place: $State,)*
+        }
+
+        impl Panes {
+            /// Forgets what was shown and typed of the design before.
+            pub fn forget(&mut self) {
+                $(self.$place.forget();)*
+            }
+
+            /// Shows a pane; draft and cloth are shown by the window.
+            pub fn show(
+                &mut self,
+                pane: Pane,
+                ui: &mut Ui,
+                document: &Document,
+                actions: &mut Vec<Action>,
+            ) {
+                let turned = self.turned;
+                let shown = Shown { document, turned };
+                match pane {
+                    Pane::Draft | Pane::Cloth => {}
+                    $(Pane::$Pane => self.$place.show(ui, &shown, actions),)*
+                }
+            }
+        }
+    };
+}
+
+#[rustfmt::skip]
+panes! {
+    floats: floats::Floats, Floats, "Floats", [Num1], "Show floats", "Floats that are too long, one by one";
+    yarns: yarns::Yarns, Yarns, "Yarns", [Num2], "Show yarns", "Colour, count and family of each yarn, stripes, metres";
+    colourways: colourways::Colourways, Colourways, "Colourways", [Num3], "Show colourways", "Named sets of yarns for one structure, side by side";
+    sett: sett::SettPane, Sett, "Sett", [Num4], "Show sett", "Ends and picks per cm or inch, reed, take-up, shrinkage";
+    posterise: posterise::Posterise, Posterise, "Posterise", [Num5], "Show posterising", "A picture in a few colours, each with a weave";
+    section: section::Section, Section, "Cut", [Num6], "Show the section", "How the yarns pass over and under along an end or a pick";
+    history: history::History, History, "History", [Num7], "Show history", "All changes by name; a click goes back to one";
+    log: log::Log, Log, "Log", [Num8], "Show log", "All that was said, warnings and errors";
 }
 
 impl Panes {
-    /// Forgets what was shown and typed of the design before: another one is open. Units and
-    /// limits that were chosen stay, and so does a picture that was read from a file.
-    pub fn forget(&mut self) {
-        self.section.forget();
-        self.floats.forget();
-        self.yarns.forget();
-        self.colourways = Colourways::default();
-        self.sett.forget();
-        self.posterise.forget();
-    }
-
     /// Reads a picture to be posterised.
-    pub fn posterise(&mut self, ctx: &egui::Context, path: &Path) {
+    pub fn read_picture(&mut self, ctx: &egui::Context, path: &Path) {
         self.posterise.read_file(ctx, path);
     }
 
-    /// Shows a pane.
-    pub fn show(
-        &mut self,
-        pane: Pane,
-        ui: &mut egui::Ui,
-        document: &Document,
-        actions: &mut Vec<Action>,
-    ) {
-        match pane {
-            Pane::Log => self.log.show(ui, document, actions),
-            Pane::Floats => {
-                self.floats.show(ui, document, actions);
-            }
-            Pane::Yarns => self.yarns.show(ui, document, actions),
-            Pane::Colourways => self.colourways.show(ui, document, self.turned, actions),
-            Pane::Sett => self.sett.show(ui, document, actions),
-            Pane::Posterise => self.posterise.show(ui, document, actions),
-            Pane::Section => {
-                self.section.show(ui, document, actions);
-            }
-            Pane::History => self.history.show(ui, document, actions),
-            // Views of their own.
-            Pane::Draft | Pane::Cloth => {}
-        }
+    /// Ends and regions of the picture that was posterised.
+    #[cfg(test)]
+    pub fn posterised(&self) -> Option<(u32, usize)> {
+        self.posterise.made_of()
     }
 }

@@ -13,9 +13,11 @@ use pickglass::text::visible;
 
 use super::later::Later;
 use super::regions::RegionList;
+use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::icons;
+
 use crate::window::picture::shrunk;
 use crate::window::task::{Outcome, Task};
 use crate::window::toasts::Grade;
@@ -62,20 +64,9 @@ struct Picture {
     texture: TextureHandle,
 }
 
-impl Posterise {
-    /// Forgets the design before, and its picture; one that was read from a file stays.
-    pub fn forget(&mut self) {
-        self.regions = RegionList::default();
-        if (self.picture.as_ref()).is_some_and(|picture| picture.of_design) {
-            *self = Self {
-                seen: self.seen,
-                ..Self::default()
-            };
-        }
-    }
-
-    /// Shows the pane.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+impl PaneView for Posterise {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+        let document = shown.document;
         self.poll(ui.ctx());
         let regions = match document.design().structure() {
             Structure::Regions(regions) => Some(regions),
@@ -104,6 +95,19 @@ impl Posterise {
         }
     }
 
+    // Forgets the design before, and its picture; one that was read from a file stays.
+    fn forget(&mut self) {
+        self.regions = RegionList::default();
+        if (self.picture.as_ref()).is_some_and(|picture| picture.of_design) {
+            *self = Self {
+                seen: self.seen,
+                ..Self::default()
+            };
+        }
+    }
+}
+
+impl Posterise {
     /// The settings and the regions; between them the pictures, where they have this height.
     fn controls_ui(
         &mut self,

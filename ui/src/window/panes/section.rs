@@ -6,8 +6,10 @@ use pickglass::edit::Document;
 use pickglass::text::visible;
 use pickglass::yarn::{CrossSection, MOST_CROSSINGS, cross_section};
 
+use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+
 use crate::window::{crossing, typing};
 
 /// Width of a crossing, points.
@@ -39,32 +41,9 @@ impl Default for Section {
     }
 }
 
-impl Section {
-    /// Forgets the cut, and where it was.
-    pub fn forget(&mut self) {
-        self.at = (0, 0);
-        self.known = None;
-    }
-
-    /// Follows the pointer over another view.
-    pub fn follow(&mut self, crossing: Option<(i64, i64)>) {
-        if let Some(crossing) = crossing.filter(|_| self.follows) {
-            self.at = crossing;
-        }
-    }
-
-    /// The number of the thread that is cut, as it is told of the crossing in the middle; where
-    /// there is no cloth, how far it lies from the first.
-    fn number(&self, document: &Document) -> i64 {
-        let (end, pick) = match crossing::numbers(document.design(), self.at) {
-            Some((end, pick)) => (i64::from(end), i64::from(pick)),
-            None => (self.at.0 + 1, self.at.1 + 1),
-        };
-        if self.along_pick { pick } else { end }
-    }
-
-    /// Shows the cut.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, _actions: &mut Vec<Action>) {
+impl PaneView for Section {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, _: &mut Vec<Action>) {
+        let document = shown.document;
         let quiet = Palette::current(ui).quiet;
         ui.horizontal_wrapped(|ui| {
             ui.radio_value(&mut self.along_pick, true, "Along a pick");
@@ -111,6 +90,31 @@ impl Section {
                 ui.label(RichText::new("There is no cloth here.").color(quiet));
             }
         }
+    }
+
+    // Forgets the cut, and where it was.
+    fn forget(&mut self) {
+        self.at = (0, 0);
+        self.known = None;
+    }
+}
+
+impl Section {
+    /// Follows the pointer over another view.
+    pub fn follow(&mut self, crossing: Option<(i64, i64)>) {
+        if let Some(crossing) = crossing.filter(|_| self.follows) {
+            self.at = crossing;
+        }
+    }
+
+    /// The number of the thread that is cut, as it is told of the crossing in the middle; where
+    /// there is no cloth, how far it lies from the first.
+    fn number(&self, document: &Document) -> i64 {
+        let (end, pick) = match crossing::numbers(document.design(), self.at) {
+            Some((end, pick)) => (i64::from(end), i64::from(pick)),
+            None => (self.at.0 + 1, self.at.1 + 1),
+        };
+        if self.along_pick { pick } else { end }
     }
 }
 

@@ -9,8 +9,10 @@ use pickglass::edit::{Document, Edit};
 use pickglass::limits::SETT_PER_CM;
 
 use super::later::Later;
+use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+
 use crate::window::typing;
 
 /// Centimetres in an inch.
@@ -39,23 +41,9 @@ impl Default for SettPane {
     }
 }
 
-#[cfg(test)]
-impl SettPane {
-    /// As if ends and picks per cm had been typed.
-    pub fn type_in(&mut self, per_cm: [f32; 2]) {
-        self.typed = Some(per_cm);
-    }
-}
-
-impl SettPane {
-    /// Forgets what was typed for the design before and what was worked out of it.
-    pub fn forget(&mut self) {
-        self.typed = None;
-        self.take_up = Later::default();
-    }
-
-    /// Shows the fields.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+impl PaneView for SettPane {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+        let document = shown.document;
         let (design, drawdown) = (
             Arc::clone(document.design()),
             Arc::clone(document.drawdown()),
@@ -73,6 +61,22 @@ impl SettPane {
             });
     }
 
+    // Forgets what was typed for the design before and what was worked out of it.
+    fn forget(&mut self) {
+        self.typed = None;
+        self.take_up = Later::default();
+    }
+}
+
+#[cfg(test)]
+impl SettPane {
+    /// As if ends and picks per cm had been typed.
+    pub fn type_in(&mut self, per_cm: [f32; 2]) {
+        self.typed = Some(per_cm);
+    }
+}
+
+impl SettPane {
     fn unit(&self) -> (f32, &'static str, &'static str) {
         if self.inches {
             (INCH, "ends/in", "picks/in")

@@ -11,6 +11,7 @@ use pickglass::text::visible;
 
 use super::dragging::Dragging;
 use super::later::Later;
+use super::{PaneView, Shown};
 use super::{columns, swatches};
 use crate::tokens::{self, Palette};
 use crate::window::action::{Action, Button, Mark};
@@ -43,18 +44,9 @@ struct Stripes {
     problem: Option<String>,
 }
 
-impl Yarns {
-    /// Forgets all of the design before but the units.
-    pub fn forget(&mut self) {
-        *self = Self {
-            unit: self.unit,
-            plies: self.plies,
-            ..Self::default()
-        };
-    }
-
-    /// Shows the list.
-    pub fn show(&mut self, ui: &mut egui::Ui, document: &Document, actions: &mut Vec<Action>) {
+impl PaneView for Yarns {
+    fn show(&mut self, ui: &mut egui::Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+        let document = shown.document;
         self.plies = self.plies.max(1);
         self.ask_needs(ui.ctx(), document);
         let design = document.design();
@@ -72,6 +64,17 @@ impl Yarns {
         });
     }
 
+    // Forgets all of the design before but the units.
+    fn forget(&mut self) {
+        *self = Self {
+            unit: self.unit,
+            plies: self.plies,
+            ..Self::default()
+        };
+    }
+}
+
+impl Yarns {
     fn ask_needs(&mut self, ctx: &egui::Context, document: &Document) {
         let (design, drawdown) = (
             Arc::clone(document.design()),

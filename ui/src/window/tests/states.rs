@@ -136,7 +136,7 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         image.save(&path).expect("written");
         let ctx = window.ctx.clone();
         let app = window.state_mut();
-        app.panes.posterise(&ctx, &path);
+        app.panes.read_picture(&ctx, &path);
         app.layout.bring(Pane::Posterise);
         wait_for(window, "the map", |window| {
             says(window, "Make it the design")
