@@ -19,7 +19,7 @@ use crate::exemplar::ExemplarStore;
 use crate::film::{Denoise, Film, Tone};
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::plan::{ShowingDials, Subject};
+use crate::plan::{ShowingSettings, Subject};
 
 /// Takes one picture of a prepared cloth with the path tracer; `on_pass` sees it after every
 /// pass.
@@ -98,7 +98,7 @@ pub struct Still {
     /// Linear means, variances and features.
     pub film: Film,
     pub(super) tone: Tone,
-    pub(super) showing: ShowingDials,
+    pub(super) showing: ShowingSettings,
     pub(super) pixels_per_mm: f32,
     shown: Shown,
     again: Again,

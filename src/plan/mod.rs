@@ -1,6 +1,6 @@
 //! What a picture simulates, and how closely: [`Settings`], [`Dial`]s and [`Effect`]s.
 //!
-//! A request carries typed [`Settings`], one struct a system, and an [`EffectChoice`]. A
+//! A request carries typed [`Settings`], those of the systems, and an [`EffectChoice`]. A
 //! [`Plan`] makes of both what each system takes, and says of every effect whether it is on,
 //! why, and who decided. Names and texts stand in two tables, [`DIALS`] and [`Effect`], which
 //! serve the command line and reports.
@@ -13,7 +13,7 @@ mod settings;
 pub use dial::{Dial, DialError, Invalidates};
 pub use dials::{DIALS, check, dial};
 pub use effect::{Decider, Effect, EffectBase, EffectChoice, Planned, Subject, UnknownEffect};
-pub use settings::{ClothDials, Settings, ShowingDials, SynthesisDials, TracingDials};
+pub use settings::{Settings, ShowingSettings};
 
 use crate::cloth::ClothSettings;
 use crate::render::{Backing, RenderSettings};
@@ -27,14 +27,13 @@ pub struct Plan {
     /// The tracer's settings.
     pub render: RenderSettings,
     /// How the film is shown.
-    pub showing: ShowingDials,
+    pub showing: ShowingSettings,
     /// Of each effect that the subject can have, whether it is simulated.
     pub effects: Vec<Planned>,
 }
 
 impl Plan {
-    /// What `settings` and `choice` come to for a subject; seeds, what lies behind the cloth
-    /// and when to stop are as the systems have them by themselves.
+    /// What `settings` and `choice` come to for a subject.
     ///
     /// # Errors
     /// When a setting lies outside of what its dial takes.
@@ -44,21 +43,22 @@ impl Plan {
         subject: Subject,
     ) -> Result<Self, DialError> {
         check(settings)?;
-        let (mut cloth, mut render) = (ClothSettings::default(), RenderSettings::default());
-        settings.synthesis.apply(&mut cloth.synthesis);
-        settings.cloth.apply(&mut cloth);
-        settings.tracing.apply(&mut render);
+        let (mut cloth, mut render) = (settings.cloth, settings.tracing.clone());
         let effects = choice.plan(subject);
-        for planned in effects.iter().filter(|planned| !planned.on) {
-            match planned.effect {
-                Effect::Shadows => render.shadows = false,
-                Effect::Multiple => render.max_order = 1,
-                Effect::Sky => render.sky = false,
+        for &Planned { effect, on, .. } in &effects {
+            match effect {
+                Effect::Shadows => render.shadows = on,
+                Effect::Sky => render.sky = on,
+                Effect::Tap => cloth.tap = on,
                 // They are a layer of their own, made where they are on.
                 Effect::Hairs => {}
+                // What these do is what their dials are set to.
+                Effect::Multiple if on => {}
+                Effect::EdgeFixing if on => {}
+                Effect::Randomisation if on => {}
+                Effect::Multiple => render.max_order = 1,
                 Effect::EdgeFixing => cloth.synthesis.rank = Rank::Off,
                 Effect::Randomisation => cloth.synthesis.patch = 0,
-                Effect::Tap => cloth.tap = false,
             }
         }
         Ok(Self {

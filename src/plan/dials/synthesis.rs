@@ -12,9 +12,9 @@ pub(super) static METHOD: Dial = Dial {
     invalidates: Invalidates::Assignment,
     effect: None,
     of_voxels: false,
-    get: |settings| settings.synthesis.method.to_string(),
+    get: |settings| settings.cloth.synthesis.method.to_string(),
     set: |settings, text| {
-        settings.synthesis.method = text.parse().ok()?;
+        settings.cloth.synthesis.method = text.parse().ok()?;
         Some(())
     },
 };
@@ -27,13 +27,13 @@ pub(super) static RANK: Dial = Dial {
     invalidates: Invalidates::Seams,
     effect: Some(Effect::EdgeFixing),
     of_voxels: false,
-    get: |settings| match settings.synthesis.rank {
+    get: |settings| match settings.cloth.synthesis.rank {
         Rank::Off => "0".to_owned(),
         Rank::Truncated(rank) => rank.to_string(),
         Rank::Exact => "exact".to_owned(),
     },
     set: |settings, text| {
-        settings.synthesis.rank = match text {
+        settings.cloth.synthesis.rank = match text {
             "exact" => Rank::Exact,
             "0" => Rank::Off,
             _ => Rank::Truncated(number(text, 1..=1000)?),
@@ -50,9 +50,9 @@ pub(super) static PATCH: Dial = Dial {
     invalidates: Invalidates::Assignment,
     effect: Some(Effect::Randomisation),
     of_voxels: false,
-    get: |settings| settings.synthesis.patch.to_string(),
+    get: |settings| settings.cloth.synthesis.patch.to_string(),
     set: |settings, text| {
-        settings.synthesis.patch = number(text, 0..=64)?;
+        settings.cloth.synthesis.patch = number(text, 0..=64)?;
         Some(())
     },
 };

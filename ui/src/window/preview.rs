@@ -242,7 +242,7 @@ impl Preview {
     }
 
     /// Looks at the cloth as a command says.
-    pub fn obey(&mut self, command: ClothCommand) {
+    pub fn run_command(&mut self, command: ClothCommand) {
         match command {
             ClothCommand::Look(view) => {
                 self.view = view;
@@ -476,7 +476,7 @@ impl Preview {
             // As exported pictures have it.
             backing: Backing::Itself,
             effects: self.effects.clone(),
-            settings: self.settings,
+            settings: self.settings.clone(),
             ..StillRequest::default()
         }
     }
