@@ -297,18 +297,6 @@ impl WeavePattern {
         (0..self.words_per_pick()).map(move |word| self.pick_word(word, pick))
     }
 
-    /// The crossings of an end from pick 0 upwards, 64 a word; bits beyond the last pick
-    /// are zero. Whoever wants all columns takes [`WeavePattern::transposed`] once.
-    pub fn column_bits(&self, end: u32) -> Vec<u64> {
-        let bit = end % TILE;
-        (0..self.words_per_end())
-            .map(|word| {
-                let tile = self.tiles.at(end, word * TILE);
-                (0..TILE as usize).fold(0, |bits, row| bits | (tile[row] >> bit & 1) << row)
-            })
-            .collect()
-    }
-
     /// Ends and picks exchanged: crossing (a, b) becomes (b, a). The warp stays `true`.
     pub fn transposed(&self) -> Self {
         let (columns, rows) = (self.words_per_pick(), self.words_per_end());
@@ -515,8 +503,7 @@ mod tests {
         let flipped = pattern.transposed();
         assert_eq!((flipped.ends(), flipped.picks()), (70, 131));
         for end in 0..131 {
-            let column = pattern.column_bits(end);
-            assert_eq!(column, flipped.pick_words(end).collect::<Vec<_>>());
+            let column: Vec<u64> = flipped.pick_words(end).collect();
             for pick in 0..70 {
                 let bit = column[(pick / 64) as usize] >> (pick % 64) & 1 == 1;
                 assert_eq!(bit, pattern.get(end, pick));

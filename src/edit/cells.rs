@@ -1,6 +1,6 @@
 //! A set of crossings: what a stroke, a fill or a selection covers.
 
-use crate::design::{SizeError, WeavePattern, check_size};
+use crate::design::WeavePattern;
 
 /// A box of crossings, `ends` wide and `picks` high from (`end`, `pick`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -218,15 +218,6 @@ impl Cells {
     /// The crossings that are not in the set.
     pub fn inverted(&self) -> Self {
         Self::of_pattern(&self.bits.inverted())
-    }
-
-    /// No crossings yet, for a size that comes from outside.
-    ///
-    /// # Errors
-    /// [`SizeError`], before memory is asked for.
-    pub fn try_none(ends: u32, picks: u32) -> Result<Self, SizeError> {
-        check_size(u64::from(ends), u64::from(picks))?;
-        Ok(Self::none(ends, picks))
     }
 }
 

@@ -67,11 +67,6 @@ impl Clip {
         &self.weave
     }
 
-    /// Whether it knows the regions of its crossings.
-    pub fn has_regions(&self) -> bool {
-        self.regions.is_some()
-    }
-
     /// Its crossings where (end, pick) of the new box of `size` shows `from(end, pick)`.
     fn rearranged(&self, size: (u32, u32), from: impl Fn(u32, u32) -> (u32, u32)) -> Self {
         let pattern = |old: &WeavePattern| {
@@ -100,12 +95,6 @@ impl Clip {
         self.rearranged((ends, picks), |end, pick| (ends - 1 - end, pick))
     }
 
-    /// Top and bottom exchanged; the hand of a twill changes.
-    pub fn upset(&self) -> Self {
-        let (ends, picks) = self.size();
-        self.rearranged((ends, picks), |end, pick| (end, picks - 1 - pick))
-    }
-
     /// Turned by quarters anticlockwise, as a drawing: a marked crossing stays warp up.
     pub fn rotated(&self, quarters: u8) -> Self {
         let (ends, picks) = self.size();
@@ -117,17 +106,6 @@ impl Clip {
             3 => self.rearranged((picks, ends), |end, pick| (ends - 1 - pick, end)),
             _ => self.clone(),
         }
-    }
-
-    /// Moved within its box; what leaves at one side comes in at the other.
-    pub fn rolled(&self, right: i32, up: i32) -> Self {
-        let (ends, picks) = self.size();
-        let back = |place: u32, by: i32, period: u32| {
-            (i64::from(place) - i64::from(by)).rem_euclid(i64::from(period)) as u32
-        };
-        self.rearranged((ends, picks), |end, pick| {
-            (back(end, right, ends), back(pick, up, picks))
-        })
     }
 
     /// Warp and weft exchanged on the face.
@@ -278,12 +256,9 @@ mod tests {
         let clip = Clip::copy(&document, &Cells::all(3, 2)).unwrap();
         let art = |clip: &Clip| clip.weave().to_string();
         assert_eq!(art(&clip.mirrored()), "..#\n.##\n");
-        assert_eq!(art(&clip.upset()), "##.\n#..\n");
         assert_eq!(art(&clip.rotated(1)), "..\n.#\n##\n");
         assert_eq!(art(&clip.rotated(2)), ".##\n..#\n");
         assert_eq!(art(&clip.rotated(3)), "##\n#.\n..\n");
-        assert_eq!(art(&clip.rolled(1, 0)), ".#.\n.##\n");
-        assert_eq!(art(&clip.rolled(0, 1)), "##.\n#..\n");
         assert_eq!(art(&clip.inverted()), ".##\n..#\n");
         assert_eq!(clip.rotated(1).rotated(3), clip);
         assert_ne!(clip.rotated(1).rotated(1), clip);

@@ -1,4 +1,4 @@
-//! Pencil, line, rectangle and ellipse: from pointer positions to crossings.
+//! Pencil, line and rectangle: from pointer positions to crossings.
 //!
 //! All are pure: they give spans of the endless cloth, which a [`Surface`]
 //! wraps by the repeat. Corners are held within its reach first.
@@ -84,51 +84,6 @@ pub fn rectangle(surface: &Surface, from: Point, to: Point, filled: bool) -> Vec
     spans
 }
 
-/// The ellipse within a rectangle between two corners; filled, or its outline.
-///
-/// A crossing belongs to it if its middle does; the outline is what has a neighbour outside.
-pub fn ellipse(surface: &Surface, from: Point, to: Point, filled: bool) -> Vec<Span> {
-    let (low, high) = corners(surface, from, to);
-    let half = (
-        (high.0 - low.0 + 1) as f64 / 2.0,
-        (high.1 - low.1 + 1) as f64 / 2.0,
-    );
-    // Half the width of a row, in whole crossings from either side.
-    let inset = |pick: i64| {
-        let up = ((pick - low.1) as f64 + 0.5 - half.1) / half.1;
-        let wide = half.0 * (1.0 - up * up).max(0.0).sqrt();
-        ((half.0 - wide).round() as i64).min((high.0 - low.0) / 2)
-    };
-    let row = |pick: i64| {
-        let inset = inset(pick);
-        Span {
-            pick,
-            from: low.0 + inset,
-            to: high.0 + 1 - inset,
-        }
-    };
-    if filled {
-        return (low.1..=high.1).map(row).collect();
-    }
-    let mut spans = Vec::new();
-    for pick in low.1..=high.1 {
-        let here = row(pick);
-        // What the narrower neighbour does not cover, and one crossing at least.
-        let beyond = [pick - 1, pick + 1].into_iter().map(|next| {
-            let inside = (low.1..=high.1).contains(&next);
-            if inside { row(next).from } else { high.0 + 1 }
-        });
-        let until = beyond.fold(here.from + 1, i64::max).min(here.to);
-        let width = until - here.from;
-        spans.push(Span { to: until, ..here });
-        spans.push(Span {
-            from: here.to - width,
-            ..here
-        });
-    }
-    spans
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may fail")]
 mod tests {
@@ -191,18 +146,6 @@ mod tests {
                 .matches('#')
                 .count(),
             6
-        );
-        let filled = art(ellipse(&surface(), (0, 0), (8, 4), true));
-        let expected = "..#####..\n#########\n#########\n#########\n..#####..\n";
-        assert_eq!(filled, expected);
-        let outline = art(ellipse(&surface(), (0, 0), (8, 4), false));
-        let expected = "..#####..\n##.....##\n#.......#\n##.....##\n..#####..\n";
-        assert_eq!(outline, expected);
-        assert_eq!(
-            art(ellipse(&surface(), (4, 2), (4, 2), false))
-                .matches('#')
-                .count(),
-            1
         );
     }
 

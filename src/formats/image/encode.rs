@@ -10,7 +10,6 @@
 //! TIFF and BMP are written without compression, which every program reads.
 
 use std::io::Cursor;
-use std::path::Path;
 
 use tiff::encoder::{Rational, TiffEncoder};
 use tiff::tags::Tag;
@@ -46,11 +45,6 @@ impl ImageFormat {
             "gif" => Some(Self::Gif),
             _ => None,
         }
-    }
-
-    /// The format of a path's ending.
-    pub fn of_path(path: &Path) -> Option<Self> {
-        Self::of_ending(&path.extension()?.to_string_lossy())
     }
 
     /// The usual ending.
