@@ -35,7 +35,7 @@ impl App {
                     self.rework(|session| Some(session.document.cancel()));
                 }
                 Action::GoTo(entry) => self.rework(|session| session.document.go_to(entry)),
-                Action::Command(command) => self.obey(ctx, command),
+                Action::Command(command) => self.run_command(ctx, command),
                 Action::Hover(at) => self.hover = at.or(self.hover),
                 Action::Mark(mark) => self.draft.mark = mark,
                 Action::LookAt { end, pick } => {

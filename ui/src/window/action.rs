@@ -1,5 +1,5 @@
 //! What a pane asks for. Panes change nothing themselves: they push actions, and the app
-//! obeys them in one place, in order, after the panes were shown.
+//! does them in one place, in order, after the panes were shown.
 
 use pickglass::design::YarnId;
 use pickglass::edit::{Cells, Edit};

@@ -250,7 +250,7 @@ impl App {
         let choice = menu::show(ui, &self.situation(), &title);
         let ctx = ui.ctx().clone();
         match choice {
-            Some(Choice::Command(command)) => self.obey(&ctx, command),
+            Some(Choice::Command(command)) => self.run_command(&ctx, command),
             Some(Choice::Preset(name)) => self.leave_for(&ctx, super::asking::Next::Preset(name)),
             Some(Choice::Recent(path)) => self.leave_for(&ctx, super::asking::Next::File(path)),
             Some(Choice::Light(preset)) => self.set_light(preset),
@@ -405,7 +405,7 @@ impl eframe::App for App {
 }
 
 impl App {
-    /// What was finished is taken, keys are obeyed, all is shown, and what the panes asked
+    /// What was finished is taken, keys are followed, all is shown, and what the panes asked
     /// for is done.
     fn frame(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
@@ -416,7 +416,7 @@ impl App {
         let asked = ctx.memory(|memory| memory.top_modal_layer().is_some());
         self.keys.begin(&ctx);
         while !asked && let Some((command, place)) = menu::pressed(&ctx) {
-            self.obey(&ctx, command);
+            self.run_command(&ctx, command);
             // Keys pressed in one slow frame are all meant.
             if !menu::goes_on(command) {
                 self.keys.put_off(&ctx, place);
@@ -445,7 +445,7 @@ impl App {
         let command = palette.show(&ctx, &self.situation());
         self.palette = palette;
         if let Some(command) = command {
-            self.obey(&ctx, command);
+            self.run_command(&ctx, command);
         }
         if self.show_shortcuts {
             self.show_shortcuts = menu::shortcuts_ui(&ctx);
@@ -466,7 +466,7 @@ impl App {
                 .show(ui, &self.settings.recent, &self.autosave.found);
         });
         match choice {
-            Some(super::start::Choice::Command(command)) => self.obey(&ctx, command),
+            Some(super::start::Choice::Command(command)) => self.run_command(&ctx, command),
             Some(super::start::Choice::Preset(name)) => self.files.open_preset(&ctx, name),
             Some(super::start::Choice::Recent(path)) => self.files.open(&ctx, path),
             Some(super::start::Choice::Recover(found)) => self.files.recover(&ctx, &found),

@@ -2,7 +2,7 @@
 //!
 //! [`app`] holds the state and the frame; [`layout`] says where the panes lie. A pane
 //! changes nothing itself: it pushes [`action`]s, which [`act`] does after all panes were
-//! shown; [`obey`] does the commands of menus and keys. [`draft`] is the pane one paints in,
+//! shown; [`run_command`] does the commands of menus and keys. [`draft`] is the pane one paints in,
 //! [`preview`] the cloth, whose [`worker`] draws on a thread of its own; the others are in
 //! [`panes`]. [`files`] reads and writes on further threads, so that the window never
 //! waits.
@@ -30,12 +30,12 @@ mod layout;
 mod leaving;
 mod lost;
 mod menu;
-mod obey;
 mod pace;
 mod palette;
 pub mod panes;
 mod picture;
 mod preview;
+mod run_command;
 mod session;
 mod settings;
 mod settings_form;

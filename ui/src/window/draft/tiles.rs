@@ -288,21 +288,21 @@ pub fn image(
 /// The thread that makes large tiles: the newest list of orders counts.
 struct Maker {
     orders: Arc<Mutex<Vec<Order>>>,
-    bell: Sender<()>,
+    wake: Sender<()>,
     made: Receiver<Made>,
 }
 
 impl Maker {
     fn start(ctx: &egui::Context) -> std::io::Result<Self> {
         let orders: Arc<Mutex<Vec<Order>>> = Arc::default();
-        let (bell, rung) = channel::<()>();
+        let (wake, woken) = channel::<()>();
         let (sender, made) = channel();
         let (list, ctx) = (Arc::clone(&orders), ctx.clone());
         std::thread::Builder::new()
             .name("draft tiles".to_owned())
             .spawn(move || {
-                // Ends when the window drops the bell.
-                while rung.recv().is_ok() {
+                // Ends when the window drops the sender.
+                while woken.recv().is_ok() {
                     loop {
                         let next = list.lock().unwrap_or_else(PoisonError::into_inner).pop();
                         let Some(order) = next else { break };
@@ -321,7 +321,7 @@ impl Maker {
                     }
                 }
             })?;
-        Ok(Self { orders, bell, made })
+        Ok(Self { orders, wake, made })
     }
 
     /// What is wanted now, in place of what was wanted before.
@@ -329,7 +329,7 @@ impl Maker {
         let some = !orders.is_empty();
         *self.orders.lock().unwrap_or_else(PoisonError::into_inner) = orders;
         if some {
-            let _ = self.bell.send(());
+            let _ = self.wake.send(());
         }
     }
 }

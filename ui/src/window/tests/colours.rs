@@ -117,7 +117,7 @@ fn painting_goes_on_in_steps_and_too_small_ones_are_refused() {
     window.state_mut().edit(Edit::BecomePattern);
     window
         .state_mut()
-        .obey(&ctx, Command::Switch(Switch::SymmetrySteps));
+        .run_command(&ctx, Command::Switch(Switch::SymmetrySteps));
     window.state_mut().draft.steps.every = [16, 24];
     window.run_steps(3);
     assert!(shows(&window, "Step in ends") && shows(&window, "Step in picks"));

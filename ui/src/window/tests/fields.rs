@@ -17,9 +17,9 @@ fn window(design: Option<&str>) -> Window {
     window
 }
 
-fn obey(window: &mut Window, command: Command) {
+fn run_command(window: &mut Window, command: Command) {
     let ctx = window.ctx.clone();
-    window.state_mut().obey(&ctx, command);
+    window.state_mut().run_command(&ctx, command);
     window.run_steps(6);
 }
 
@@ -35,7 +35,7 @@ fn type_over(window: &mut Window, role: Role, field: &str, text: &str) {
     retype(window, text);
 }
 
-/// Types over what has the keyboard; the letters also come as keys, as on a real desk.
+/// Types over what has the keyboard; the letters also come as keys, as on a real mailbox.
 fn retype(window: &mut Window, text: &str) {
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.run_steps(2);
@@ -76,7 +76,7 @@ fn click(window: &mut Window, at: Pos2) {
 #[test]
 fn stripes_with_a_mistake_keep_the_keyboard_until_they_are_right() {
     let mut window = window(Some("oxford"));
-    obey(&mut window, Command::Show(Pane::Yarns));
+    run_command(&mut window, Command::Show(Pane::Yarns));
     let order = |window: &Window| {
         let design = window.state().document().expect("open").design().clone();
         design.maps().warp.order().map(<[_]>::to_vec)
@@ -153,7 +153,7 @@ fn a_place_that_cannot_be_written_is_corrected_where_it_stands() {
 #[test]
 fn a_number_that_is_none_keeps_the_keyboard() {
     let mut window = window(Some("oxford"));
-    obey(&mut window, Command::Show(Pane::Sett));
+    run_command(&mut window, Command::Show(Pane::Sett));
     let field = |window: &Window| {
         let field = window.get_by_role_and_label(Role::SpinButton, "Ends a dent");
         field.accesskit_node().value().unwrap_or_default()
@@ -173,7 +173,7 @@ fn a_number_that_is_none_keeps_the_keyboard() {
 #[test]
 fn a_name_that_cannot_be_keeps_the_keyboard() {
     let mut window = window(Some("herringbone"));
-    obey(&mut window, Command::Show(Pane::Colourways));
+    run_command(&mut window, Command::Show(Pane::Colourways));
     let names = |window: &Window| -> Vec<String> {
         let design = window.state().document().expect("open").design().clone();
         design.colourways().iter().map(|c| c.name.clone()).collect()
@@ -211,7 +211,7 @@ fn a_click_beside_a_form_gives_nothing_up() {
         Command::Print,
     ] {
         let mut window = window(Some("oxford"));
-        obey(&mut window, command);
+        run_command(&mut window, command);
         assert!(shows(&window, "Cancel"), "{command:?} is open");
         click(&mut window, Pos2::new(6.0, 600.0));
         assert!(
@@ -228,7 +228,7 @@ fn a_click_beside_a_form_gives_nothing_up() {
 #[test]
 fn buttons_stay_where_they_are_when_a_form_changes_its_size() {
     let mut window = window(Some("oxford"));
-    obey(&mut window, Command::ExportVolume);
+    run_command(&mut window, Command::ExportVolume);
     window.run_steps(6);
     let place = |window: &Window, label: &str| window.get_by_label(label).rect();
     let before = place(&window, "Count the bytes");

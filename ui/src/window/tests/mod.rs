@@ -72,7 +72,7 @@ fn build(builder: HarnessBuilder<App>, design: Option<&str>) -> Window {
 fn open(builder: HarnessBuilder<App>, opened: Option<Opened>) -> Window {
     let mut window: Window =
         builder.build_eframe(|cc| App::new(&cc.egui_ctx, opened, options()).expect("a worker"));
-    // On a desk with a real dialog a test would wait for a person.
+    // On a mailbox with a real dialog a test would wait for a person.
     window.state_mut().files.typed_only = true;
     window
 }

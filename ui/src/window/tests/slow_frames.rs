@@ -173,7 +173,9 @@ fn case_12_after_enter_on_an_error_all_keys_of_the_frame_go_to_the_field() {
 fn case_12_what_was_typed_into_a_field_that_esc_gave_up_is_no_command() {
     let mut window = slow_window("oxford");
     let ctx = window.ctx.clone();
-    window.state_mut().obey(&ctx, Command::Show(Pane::Yarns));
+    window
+        .state_mut()
+        .run_command(&ctx, Command::Show(Pane::Yarns));
     window.run_steps(6);
     let stripes = egui::accesskit::Role::TextInput;
     window

@@ -41,66 +41,66 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
     }),
     ("blank", Some(""), |_, _| {}),
     ("blank scandinavian", Some(""), |window, _| {
-        obey(window, Command::Arrange(DraftLayout::Scandinavian));
-        obey(window, Command::Switch(Switch::LongFloats));
+        run_command(window, Command::Arrange(DraftLayout::Scandinavian));
+        run_command(window, Command::Switch(Switch::LongFloats));
     }),
     ("draft", Some("default"), |window, _| {
-        obey(window, Command::Switch(Switch::Navigator));
+        run_command(window, Command::Switch(Switch::Navigator));
     }),
     ("structure", Some("herringbone"), |window, _| {
-        obey(window, Command::Switch(Switch::Structure));
-        obey(window, Command::Weave(WeaveCommand::SelectAll));
+        run_command(window, Command::Switch(Switch::Structure));
+        run_command(window, Command::Weave(WeaveCommand::SelectAll));
     }),
     ("jacquard", Some("damask"), |window, _| {
-        obey(window, Command::Switch(Switch::Navigator));
+        run_command(window, Command::Switch(Switch::Navigator));
     }),
     ("palette", Some("oxford"), |window, _| {
-        obey(window, Command::Palette);
+        run_command(window, Command::Palette);
     }),
     ("shortcuts", Some("oxford"), |window, _| {
-        obey(window, Command::Shortcuts);
+        run_command(window, Command::Shortcuts);
     }),
     ("repeat", Some("oxford"), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::Repeat));
+        run_command(window, Command::Weave(WeaveCommand::Repeat));
     }),
     ("resize", Some("oxford"), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::Resize));
+        run_command(window, Command::Weave(WeaveCommand::Resize));
     }),
     ("loom", Some(""), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::Loom));
+        run_command(window, Command::Weave(WeaveCommand::Loom));
     }),
     ("words", Some("oxford"), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::Words));
+        run_command(window, Command::Weave(WeaveCommand::Words));
     }),
     ("stamp", Some("oxford"), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::StampWeave));
+        run_command(window, Command::Weave(WeaveCommand::StampWeave));
     }),
     ("unsaved", Some("oxford"), |window, _| {
-        obey(window, Command::Weave(WeaveCommand::Invert));
-        obey(window, Command::New);
+        run_command(window, Command::Weave(WeaveCommand::Invert));
+        run_command(window, Command::New);
     }),
     ("refused", Some(""), |window, _| {
         let cells = Cells::of(16, 16, [(0, 0), (1, 0)]);
         window.state_mut().edit(Edit::Flip(cells));
     }),
     ("still", Some("oxford"), |window, _| {
-        obey(window, Command::ExportStill);
+        run_command(window, Command::ExportStill);
     }),
     ("volume", Some("oxford"), |window, _| {
-        obey(window, Command::ExportVolume);
+        run_command(window, Command::ExportVolume);
     }),
     ("settings", Some("oxford"), |window, _| {
-        obey(window, Command::Settings);
+        run_command(window, Command::Settings);
     }),
     ("path with a mistake", Some("oxford"), |window, _| {
         open_by_path(window, "/absent/folder/of/a/weaver/shawl.wif");
         wait_for(window, "what is wrong", |window| says(window, "Error: "));
     }),
     ("print", Some("oxford"), |window, _| {
-        obey(window, Command::Print);
+        run_command(window, Command::Print);
     }),
     ("draft as image", Some("oxford"), |window, folder| {
-        obey(window, Command::ExportDraft);
+        run_command(window, Command::ExportDraft);
         let path = folder.join("oxford.png");
         type_path(window, &path.display().to_string(), "Export");
     }),
@@ -143,7 +143,7 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         });
     }),
     ("yarns", Some("tweed"), |window, _| {
-        obey(window, Command::Show(Pane::Yarns));
+        run_command(window, Command::Show(Pane::Yarns));
         let first = {
             let document = window.state().document().expect("open");
             document.design().yarns()[0].name.clone()
@@ -152,7 +152,7 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         named.last().expect("its name").click();
     }),
     ("regions", Some("twill-satin"), |window, _| {
-        obey(window, Command::Show(Pane::Posterise));
+        run_command(window, Command::Show(Pane::Posterise));
     }),
     ("cloth", Some("oxford"), |window, _| {
         draw_cloth(window);
@@ -161,28 +161,28 @@ const STATES: [(&str, Option<&str>, Way); 30] = [
         draw_cloth(window);
         window.get_by_label("Keep").click();
         window.run_steps(2);
-        obey(window, Command::Cloth(ClothCommand::TurnOver));
+        run_command(window, Command::Cloth(ClothCommand::TurnOver));
         window.run_steps(3);
     }),
     ("contact sheet", Some("herringbone"), |window, _| {
         window.state_mut().preview.pause();
-        obey(window, Command::ContactSheet);
+        run_command(window, Command::ContactSheet);
         wait_for(window, "the colourways", |window| {
             window.state().preview.sheet_is_drawn()
         });
     }),
 ];
 
-fn obey(window: &mut Window, command: Command) {
+fn run_command(window: &mut Window, command: Command) {
     let ctx = window.ctx.clone();
-    window.state_mut().obey(&ctx, command);
+    window.state_mut().run_command(&ctx, command);
     window.run_steps(3);
 }
 
 /// Has the cloth drawn, once.
 fn draw_cloth(window: &mut Window) {
     if window.state().preview.paused {
-        obey(window, Command::Cloth(ClothCommand::Pause));
+        run_command(window, Command::Cloth(ClothCommand::Pause));
     }
     wait_for(window, "the cloth", |window| {
         window.state().preview.pane.shown.is_some()

@@ -30,9 +30,9 @@ fn straight_draw() -> Opened {
     Opened::file(path).expect("the case's file")
 }
 
-fn obey(window: &mut Window, command: Command) {
+fn run_command(window: &mut Window, command: Command) {
     let ctx = window.ctx.clone();
-    window.state_mut().obey(&ctx, command);
+    window.state_mut().run_command(&ctx, command);
     window.run_steps(3);
 }
 
@@ -40,7 +40,7 @@ fn laid_out(opened: Opened, layout: DraftLayout) -> Window {
     let mut window = open(builder(), Some(opened));
     window.state_mut().preview.freeze();
     window.run_steps(2);
-    obey(&mut window, Command::Arrange(layout));
+    run_command(&mut window, Command::Arrange(layout));
     window
 }
 
@@ -224,7 +224,7 @@ fn case_11_painting_selecting_and_arrows_go_where_they_point_in_every_layout() {
         });
         assert_eq!(drawdown(&window), expected, "{layout:?}");
 
-        obey(&mut window, Command::Use(Tool::Select));
+        run_command(&mut window, Command::Use(Tool::Select));
         let (from, to) = (place(&window, (1, 1)), place(&window, (3, 4)));
         drag(&mut window, from, to);
         let selected = Rect {
@@ -240,8 +240,8 @@ fn case_11_painting_selecting_and_arrows_go_where_they_point_in_every_layout() {
         );
 
         // What was copied is put where the pointer is.
-        obey(&mut window, Command::Weave(WeaveCommand::Copy));
-        obey(&mut window, Command::Use(Tool::Stamp));
+        run_command(&mut window, Command::Weave(WeaveCommand::Copy));
+        run_command(&mut window, Command::Use(Tool::Stamp));
         let at = place(&window, (4, 4));
         drag(&mut window, at, at);
         // Of the copy the crossings (2, 3) and (3, 3), counted from (1, 1).
@@ -288,7 +288,7 @@ fn case_11_rolling_goes_where_it_says_in_every_layout() {
             let size = window.state().draft.cell() as f32;
             let beside = place(&window, (0, 0)) + egui::vec2(right, -up) * size;
             let (end, pick) = window.state().draft.crossing_at(beside);
-            obey(&mut window, Command::Weave(WeaveCommand::Roll(toward)));
+            run_command(&mut window, Command::Weave(WeaveCommand::Roll(toward)));
             let [end, pick] = [end, pick].map(|at| at.rem_euclid(8) as u32);
             assert!(drawdown(&window).get(end, pick), "{layout:?} {toward:?}");
         }
@@ -318,7 +318,7 @@ fn case_11_a_z_twill_is_drawn_as_one_in_every_layout() {
             window.state_mut().take_design(&opened, session);
             window.state_mut().preview.freeze();
             window.run_steps(2);
-            obey(&mut window, Command::Arrange(layout));
+            run_command(&mut window, Command::Arrange(layout));
             hover(&mut window, Pos2::new(2.0, 2.0));
             let picture = window.render().expect("a picture");
             let size = window.state().draft.cell() as f32;

@@ -15,7 +15,7 @@ use pickglass::cloth::{Followed, PreparedCloth, UnfinishedCloth, YarnClasses};
 use pickglass::engine::{self, StillError, StillRequest};
 use pickglass::job::Job;
 
-use super::{Building, Desk, Fibres, Phase, PreviewRequest};
+use super::{Building, Fibres, Mailbox, Phase, PreviewRequest};
 
 /// Voxel level of the cloth that is drawn until the full one is built.
 const COARSE_LEVEL: u32 = 3;
@@ -56,13 +56,13 @@ pub(super) fn first_sight_serves(still: &StillRequest) -> bool {
 /// The best cloth at hand for a request, and what it is of; `None` where first sight serves
 /// until the full one is built.
 pub(super) fn cloth_of(
-    desk: &Arc<Desk>,
+    mailbox: &Arc<Mailbox>,
     request: &PreviewRequest,
     job: &Job,
     coarse: &mut Option<Kept>,
 ) -> Result<Option<(Arc<PreparedCloth>, Fibres)>, StillError> {
     engine::check_view(&request.design, &request.still)?;
-    let full = desk.lock().full.clone();
+    let full = mailbox.lock().full.clone();
     let wanted = match full {
         Some((made_for, cloth))
             if made_for.same_cloth(request) && engine::covers(&cloth, &request.still) =>
@@ -79,7 +79,7 @@ pub(super) fn cloth_of(
             )? {
                 Some(Followed::Ready(cloth)) => {
                     let cloth = Arc::new(cloth);
-                    desk.lock().full = Some((request.clone(), Arc::clone(&cloth)));
+                    mailbox.lock().full = Some((request.clone(), Arc::clone(&cloth)));
                     return Ok(Some((cloth, Fibres::Full)));
                 }
                 Some(Followed::Unfinished(cloth)) => Wanted::Exemplars(Box::new(cloth)),
@@ -88,17 +88,17 @@ pub(super) fn cloth_of(
         }
         _ => Wanted::All,
     };
-    build(desk, request, wanted);
-    if first_sight_serves(&request.still) && desk.lock().builder.is_some() {
+    build(mailbox, request, wanted);
+    if first_sight_serves(&request.still) && mailbox.lock().builder.is_some() {
         return Ok(None);
     }
-    let cloth = coarse_cloth(desk, request, job, coarse)?;
+    let cloth = coarse_cloth(mailbox, request, job, coarse)?;
     let light_error = cloth.cloth().light_error();
     Ok(Some((cloth, Fibres::Coarse { light_error })))
 }
 
 fn coarse_cloth(
-    desk: &Desk,
+    mailbox: &Mailbox,
     request: &PreviewRequest,
     job: &Job,
     coarse: &mut Option<Kept>,
@@ -118,12 +118,12 @@ fn coarse_cloth(
     };
     let cloth = match followed {
         Some(Followed::Ready(cloth)) => cloth,
-        Some(Followed::Unfinished(cloth)) => cloth.complete(&desk.store, job)?,
+        Some(Followed::Unfinished(cloth)) => cloth.complete(&mailbox.store, job)?,
         None => {
-            desk.set_phase(Phase::Preparing);
+            mailbox.set_phase(Phase::Preparing);
             *coarse = None;
             let (design, drawdown) = (&request.design, &request.drawdown);
-            engine::prepare_woven(design, drawdown, &still, &desk.store, job)?
+            engine::prepare_woven(design, drawdown, &still, &mailbox.store, job)?
         }
     };
     let cloth = Arc::new(cloth);
@@ -133,9 +133,9 @@ fn coarse_cloth(
 
 /// Builds what the full cloth needs on a thread of its own, unless that is under way; then
 /// the last request is drawn again from it.
-fn build(desk: &Arc<Desk>, request: &PreviewRequest, wanted: Wanted) {
+fn build(mailbox: &Arc<Mailbox>, request: &PreviewRequest, wanted: Wanted) {
     let classes = YarnClasses::new(&request.design);
-    let mut shared = desk.lock();
+    let mut shared = mailbox.lock();
     if let Some(builder) = &shared.builder {
         if builder.serves(request, &classes) {
             return;
@@ -144,36 +144,42 @@ fn build(desk: &Arc<Desk>, request: &PreviewRequest, wanted: Wanted) {
         shared.builder = None;
         shared.building = None;
     }
-    let job = listening(desk);
+    let job = listening(mailbox);
     let builder = Builder {
         request: request.clone(),
         classes,
         job: job.clone(),
     };
-    let (thread_desk, thread_request) = (Arc::clone(desk), request.clone());
+    let (thread_mailbox, thread_request) = (Arc::clone(mailbox), request.clone());
     let spawned = std::thread::Builder::new()
         .name("exemplars".to_owned())
         .spawn(move || {
-            let (desk, request) = (thread_desk, thread_request);
+            let (mailbox, request) = (thread_mailbox, thread_request);
             let built = catch_unwind(AssertUnwindSafe(|| {
                 super::threads::behind(|| match wanted {
-                    Wanted::Exemplars(cloth) => Ok(cloth.complete(&desk.store, &job)?),
+                    Wanted::Exemplars(cloth) => Ok(cloth.complete(&mailbox.store, &job)?),
                     Wanted::All => {
                         let (design, drawdown) = (&request.design, &request.drawdown);
-                        engine::prepare_woven(design, drawdown, &request.still, &desk.store, &job)
+                        engine::prepare_woven(
+                            design,
+                            drawdown,
+                            &request.still,
+                            &mailbox.store,
+                            &job,
+                        )
                     }
                 })
             }));
-            take_built(&desk, &job, request, built);
+            take_built(&mailbox, &job, request, built);
         });
     if spawned.is_ok() {
         shared.builder = Some(builder);
     }
 }
 
-/// A job that tells the desk how far it is.
-fn listening(desk: &Arc<Desk>) -> Job {
-    let report_to = Arc::clone(desk);
+/// A job that tells the mailbox how far it is.
+fn listening(mailbox: &Arc<Mailbox>) -> Job {
+    let report_to = Arc::clone(mailbox);
     Job::new().with_listener(move |stage, fraction| {
         let mut shared = report_to.lock();
         if shared.builder.is_some() {
@@ -188,12 +194,12 @@ fn listening(desk: &Arc<Desk>) -> Job {
 }
 
 fn take_built(
-    desk: &Desk,
+    mailbox: &Mailbox,
     job: &Job,
     request: PreviewRequest,
     built: std::thread::Result<Result<PreparedCloth, StillError>>,
 ) {
-    let mut shared = desk.lock();
+    let mut shared = mailbox.lock();
     if job.check().is_err() {
         return;
     }
@@ -218,6 +224,6 @@ fn take_built(
         }
     }
     drop(shared);
-    desk.bell.notify_all();
-    (desk.wake)();
+    mailbox.changed.notify_all();
+    (mailbox.wake)();
 }

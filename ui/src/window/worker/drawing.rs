@@ -12,7 +12,7 @@ use pickglass::engine::{
 use pickglass::job::Job;
 use pickglass::plan::Subject;
 
-use super::{Aim, Desk, Fibres, LONGEST, Picture, PreviewRequest};
+use super::{Aim, Fibres, LONGEST, Mailbox, Picture, PreviewRequest};
 
 /// Tracing goes on so many times as long as it takes to show what it found, before it is
 /// shown again.
@@ -101,7 +101,7 @@ impl OnScreen {
 
 /// The pictures of one request.
 pub(super) struct Drawing<'r> {
-    pub desk: &'r Desk,
+    pub mailbox: &'r Mailbox,
     pub request: &'r PreviewRequest,
     pub job: &'r Job,
     pub begun: Instant,
@@ -253,9 +253,9 @@ impl Drawing<'_> {
     /// Nobody looks: the film waits, with all that it has. Returns how long it did.
     fn wait_while_hidden(&self) -> Duration {
         let begun = Instant::now();
-        let mut shared = self.desk.lock();
+        let mut shared = self.mailbox.lock();
         while shared.hidden && self.job.check().is_ok() {
-            shared = self.desk.wait(shared);
+            shared = self.mailbox.wait(shared);
         }
         begun.elapsed()
     }
@@ -276,13 +276,13 @@ impl Drawing<'_> {
             full_size,
             fibres,
         };
-        let mut shared = self.desk.lock();
+        let mut shared = self.mailbox.lock();
         match self.request.aim {
             Aim::Pane => shared.picture = Some(picture),
             Aim::Glass => shared.glass = Some(picture),
         }
         drop(shared);
-        (self.desk.wake)();
+        (self.mailbox.wake)();
     }
 }
 

@@ -220,21 +220,22 @@ impl Shared {
     }
 }
 
-struct Desk {
+/// What the window and the threads that draw leave for each other.
+struct Mailbox {
     shared: Mutex<Shared>,
-    bell: Condvar,
+    changed: Condvar,
     wake: Box<dyn Fn() + Send + Sync>,
     store: ExemplarStore,
 }
 
-impl Desk {
+impl Mailbox {
     fn lock(&self) -> MutexGuard<'_, Shared> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for the bell.
+    /// Waits until something of it has changed.
     fn wait<'d>(&'d self, shared: MutexGuard<'d, Shared>) -> MutexGuard<'d, Shared> {
-        (self.bell.wait(shared)).unwrap_or_else(PoisonError::into_inner)
+        (self.changed.wait(shared)).unwrap_or_else(PoisonError::into_inner)
     }
 
     fn set_phase(&self, phase: Phase) {
@@ -245,7 +246,7 @@ impl Desk {
 
 /// The worker's handle. Dropping it cancels the work.
 pub struct ClothWorker {
-    desk: Arc<Desk>,
+    mailbox: Arc<Mailbox>,
 }
 
 impl ClothWorker {
@@ -254,87 +255,87 @@ impl ClothWorker {
         store: ExemplarStore,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> std::io::Result<Self> {
-        let desk = Arc::new(Desk {
+        let mailbox = Arc::new(Mailbox {
             shared: Mutex::default(),
-            bell: Condvar::new(),
+            changed: Condvar::new(),
             wake: Box::new(wake),
             store,
         });
-        let thread_desk = Arc::clone(&desk);
+        let thread_mailbox = Arc::clone(&mailbox);
         std::thread::Builder::new()
             .name("cloth".to_owned())
-            .spawn(move || work(&thread_desk))?;
-        Ok(Self { desk })
+            .spawn(move || work(&thread_mailbox))?;
+        Ok(Self { mailbox })
     }
 
     /// Asks for a picture; an older request that has not begun never will.
     pub fn request(&self, request: PreviewRequest) {
-        let mut shared = self.desk.lock();
+        let mut shared = self.mailbox.lock();
         shared.supersede();
         shared.next = Some(request);
         drop(shared);
-        self.desk.bell.notify_all();
+        self.mailbox.changed.notify_all();
     }
 
     /// Cancels the work until the next request.
     pub fn stop(&self) {
-        let mut shared = self.desk.lock();
+        let mut shared = self.mailbox.lock();
         shared.next = None;
         shared.cancel_all();
         shared.phase = Phase::Stopped;
         drop(shared);
-        self.desk.bell.notify_all();
+        self.mailbox.changed.notify_all();
     }
 
     /// Says whether anybody can see the window: refining waits while nobody does.
     pub fn set_hidden(&self, hidden: bool) {
-        let mut shared = self.desk.lock();
+        let mut shared = self.mailbox.lock();
         if shared.hidden != hidden {
             shared.hidden = hidden;
             drop(shared);
-            self.desk.bell.notify_all();
+            self.mailbox.changed.notify_all();
         }
     }
 
     /// Whether refining waits to be seen.
     pub fn is_hidden(&self) -> bool {
-        self.desk.lock().hidden
+        self.mailbox.lock().hidden
     }
 
     /// What the worker is at.
     pub fn phase(&self) -> Phase {
-        self.desk.lock().phase.clone()
+        self.mailbox.lock().phase.clone()
     }
 
     /// How far the exemplars are, while they are being built.
     pub fn building(&self) -> Option<Building> {
-        self.desk.lock().building.clone()
+        self.mailbox.lock().building.clone()
     }
 
     /// Why the full cloth could not be built, once.
     pub fn take_failure(&self) -> Option<String> {
-        self.desk.lock().failure.take()
+        self.mailbox.lock().failure.take()
     }
 
     /// The newest picture that was not taken yet.
     pub fn take_picture(&self) -> Option<Picture> {
-        self.desk.lock().picture.take()
+        self.mailbox.lock().picture.take()
     }
 
     /// The newest picture for the pick glass that was not taken yet.
     pub fn take_glass(&self) -> Option<Picture> {
-        self.desk.lock().glass.take()
+        self.mailbox.lock().glass.take()
     }
 }
 
 impl Drop for ClothWorker {
     fn drop(&mut self) {
-        let mut shared = self.desk.lock();
+        let mut shared = self.mailbox.lock();
         shared.closing = true;
         shared.next = None;
         shared.cancel_all();
         drop(shared);
-        self.desk.bell.notify_all();
+        self.mailbox.changed.notify_all();
     }
 }
 
@@ -381,7 +382,7 @@ fn coarsest_film(request: &PreviewRequest) -> u32 {
 }
 
 /// What the drawing thread keeps from one request to the next.
-struct Kit {
+struct WorkerState {
     coarse: Option<Kept>,
     first: FirstLevel,
     tables: Arc<SightTables>,
@@ -392,8 +393,8 @@ struct Kit {
     pool: Option<rayon::ThreadPool>,
 }
 
-fn work(desk: &Arc<Desk>) {
-    let mut kit = Kit {
+fn work(mailbox: &Arc<Mailbox>) {
+    let mut state = WorkerState {
         coarse: None,
         first: FirstLevel(5),
         tables: Arc::default(),
@@ -401,9 +402,11 @@ fn work(desk: &Arc<Desk>) {
         glass: None,
         pool: threads::pool_behind("cloth"),
     };
-    while let Some((request, job)) = next_request(desk) {
-        let outcome = catch_unwind(AssertUnwindSafe(|| serve(desk, &request, &job, &mut kit)));
-        let mut shared = desk.lock();
+    while let Some((request, job)) = next_request(mailbox) {
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            serve(mailbox, &request, &job, &mut state)
+        }));
+        let mut shared = mailbox.lock();
         shared.current = None;
         let phase = match outcome {
             Ok(Ok(done)) => Phase::Done(done),
@@ -412,7 +415,7 @@ fn work(desk: &Arc<Desk>) {
             Ok(Err(error)) if error.is_too_wide() => Phase::AtSight(error.to_string()),
             Ok(Err(error)) => Phase::Failed(error.to_string()),
             Err(_) => {
-                (kit.coarse, kit.screen, kit.glass) = (None, None, None);
+                (state.coarse, state.screen, state.glass) = (None, None, None);
                 shared.full = None;
                 Phase::Failed(
                     "the picture: drawing it failed unexpectedly: try another view".to_owned(),
@@ -423,12 +426,12 @@ fn work(desk: &Arc<Desk>) {
             shared.phase = phase;
         }
         drop(shared);
-        (desk.wake)();
+        (mailbox.wake)();
     }
 }
 
-fn next_request(desk: &Desk) -> Option<(PreviewRequest, Job)> {
-    let mut shared = desk.lock();
+fn next_request(mailbox: &Mailbox) -> Option<(PreviewRequest, Job)> {
+    let mut shared = mailbox.lock();
     loop {
         if shared.closing {
             return None;
@@ -442,13 +445,13 @@ fn next_request(desk: &Desk) -> Option<(PreviewRequest, Job)> {
             });
             return Some((request, job));
         }
-        shared = desk.wait(shared);
+        shared = mailbox.wait(shared);
     }
 }
 
 /// Lets newer requests end this one from here on; an error when one is waiting.
-fn lower_shield(desk: &Desk) -> Result<(), Cancelled> {
-    let mut shared = desk.lock();
+fn lower_shield(mailbox: &Mailbox) -> Result<(), Cancelled> {
+    let mut shared = mailbox.lock();
     if shared.closing || shared.next.is_some() {
         return Err(Cancelled);
     }
@@ -459,36 +462,36 @@ fn lower_shield(desk: &Desk) -> Result<(), Cancelled> {
 }
 
 fn serve(
-    desk: &Arc<Desk>,
+    mailbox: &Arc<Mailbox>,
     request: &PreviewRequest,
     job: &Job,
-    kit: &mut Kit,
+    state: &mut WorkerState,
 ) -> Result<Done, StillError> {
-    let Kit {
+    let WorkerState {
         coarse,
         first,
         tables,
         screen,
         glass,
         pool,
-    } = kit;
+    } = state;
     let screen = match request.aim {
         Aim::Pane => screen,
         Aim::Glass => glass,
     };
     let drawing = Drawing {
-        desk,
+        mailbox,
         request,
         job,
         begun: Instant::now(),
         patience: PATIENCE,
     };
     drawing.first_sight(tables, screen)?;
-    lower_shield(desk)?;
-    let Some((cloth, fibres)) = cloth_of(desk, request, job, coarse)? else {
+    lower_shield(mailbox)?;
+    let Some((cloth, fibres)) = cloth_of(mailbox, request, job, coarse)? else {
         return Ok(Done::Waiting);
     };
-    desk.set_phase(Phase::Refining);
+    mailbox.set_phase(Phase::Refining);
     let mut refine = || {
         let coarsest = coarsest_film(request).min(first.0);
         for level in (1..=coarsest).rev() {
@@ -658,10 +661,10 @@ mod tests {
         let design = Opened::preset("oxford").expect("a preset").design;
         let worker = ClothWorker::start(ExemplarStore::user(), || {}).expect("a thread");
         worker.request(request(1, &design));
-        let desk = Arc::downgrade(&worker.desk);
+        let mailbox = Arc::downgrade(&worker.mailbox);
         drop(worker);
         let start = Instant::now();
-        while desk.upgrade().is_some() {
+        while mailbox.upgrade().is_some() {
             assert!(start.elapsed() < Duration::from_secs(60), "still at work");
             std::thread::sleep(Duration::from_millis(2));
         }

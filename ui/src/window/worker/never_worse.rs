@@ -13,7 +13,7 @@ use pickglass::job::Job;
 
 use super::drawing::{Drawing, OnScreen};
 use super::{
-    Aim, COARSE_SAMPLES, Desk, Fibres, Picture, PreviewRequest, Quality, Shared, coarsest_film,
+    Aim, COARSE_SAMPLES, Fibres, Mailbox, Picture, PreviewRequest, Quality, Shared, coarsest_film,
 };
 use preview_views::{PreviewView, SIZE, reference, squares, visits};
 
@@ -46,23 +46,26 @@ fn squares_of(picture: &Picture) -> Vec<Vec3> {
     squares(picture.image.size[0], &pixels)
 }
 
-/// A desk that keeps every picture that is put on it.
-fn desk() -> (Arc<Desk>, Arc<Mutex<Vec<Picture>>>) {
+/// A mailbox that keeps every picture that is put on it.
+fn mailbox() -> (Arc<Mailbox>, Arc<Mutex<Vec<Picture>>>) {
     let seen: Arc<Mutex<Vec<Picture>>> = Arc::default();
-    let desk = Arc::new_cyclic(|desk: &std::sync::Weak<Desk>| {
-        let (desk, seen) = (desk.clone(), Arc::clone(&seen));
-        Desk {
+    let mailbox = Arc::new_cyclic(|mailbox: &std::sync::Weak<Mailbox>| {
+        let (mailbox, seen) = (mailbox.clone(), Arc::clone(&seen));
+        Mailbox {
             shared: Mutex::new(Shared::default()),
-            bell: Condvar::new(),
+            changed: Condvar::new(),
             wake: Box::new(move || {
-                if let Some(picture) = desk.upgrade().and_then(|desk| desk.lock().picture.take()) {
+                if let Some(picture) = mailbox
+                    .upgrade()
+                    .and_then(|mailbox| mailbox.lock().picture.take())
+                {
                     seen.lock().expect("seen").push(picture);
                 }
             }),
             store: ExemplarStore::user(),
         }
     });
-    (desk, seen)
+    (mailbox, seen)
 }
 
 fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
@@ -126,11 +129,11 @@ fn watch(
     screen: &mut Option<OnScreen>,
 ) -> Option<Watched> {
     let reference = reference(&view.name)?;
-    let (desk, seen) = desk();
+    let (mailbox, seen) = mailbox();
     let request = request_of(view, 1);
     let job = Job::new();
     let drawing = Drawing {
-        desk: &desk,
+        mailbox: &mailbox,
         request: &request,
         job: &job,
         begun: Instant::now(),
@@ -138,7 +141,7 @@ fn watch(
     };
     drawing.first_sight(tables, screen).expect("first sight");
     let still = &request.still;
-    let cloth = prepare_woven(&view.design, &view.drawdown, still, &desk.store, &job);
+    let cloth = prepare_woven(&view.design, &view.drawdown, still, &mailbox.store, &job);
     let cloth = cloth.expect("a cloth");
     let coarse = (1..=coarsest_film(&request)).rev();
     let steps = coarse.map(|level| (level, COARSE_SAMPLES));

@@ -18,7 +18,7 @@ impl App {
     }
 
     /// Does a command.
-    pub(super) fn obey(&mut self, ctx: &egui::Context, command: Command) {
+    pub(super) fn run_command(&mut self, ctx: &egui::Context, command: Command) {
         if !self.situation().allows(command) {
             return;
         }
@@ -83,7 +83,7 @@ impl App {
             }
             Command::Zoom(command) if self.preview.in_use() => self.preview.zoom_as(command),
             Command::Zoom(command) => self.draft.zoom_as(command),
-            Command::Cloth(command) => self.preview.obey(command),
+            Command::Cloth(command) => self.preview.run_command(command),
             Command::Switch(switch) => self.switch(switch),
             Command::Weave(command) => self.weave(ctx, command),
             Command::Arrange(arrangement) => {
