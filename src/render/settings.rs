@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-use strum::{Display, EnumString, IntoStaticStr, VariantArray};
+use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 /// What lies behind the cloth.
 #[derive(
@@ -17,6 +17,7 @@ use strum::{Display, EnumString, IntoStaticStr, VariantArray};
     Deserialize,
     Display,
     EnumString,
+    EnumMessage,
     IntoStaticStr,
     VariantArray,
 )]
@@ -29,7 +30,7 @@ pub enum Backing {
     White,
     /// A black sheet that reflects nothing.
     Black,
-    /// More layers of the cloth itself, see [`super::Stack`].
+    /// More layers of the cloth itself.
     #[strum(serialize = "self")]
     Itself,
 }

@@ -4,7 +4,7 @@
 //! z out of the face. On film up is +y unless a view says otherwise.
 
 use glam::Vec3;
-use strum::{Display, EnumString, IntoStaticStr, VariantArray};
+use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 use super::Ray;
 use super::pose::Pose;
@@ -43,6 +43,7 @@ pub struct Camera {
     Default,
     Display,
     EnumString,
+    EnumMessage,
     IntoStaticStr,
     VariantArray,
 )]

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use strum::{Display, EnumString, IntoStaticStr, VariantArray};
+use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 use crate::design::{Lattice, Repeat, WeavePattern};
 use crate::job::Job;
@@ -37,6 +37,7 @@ const MOST_WHOLE: u64 = 1 << 28;
     Deserialize,
     Display,
     EnumString,
+    EnumMessage,
     IntoStaticStr,
     VariantArray,
 )]

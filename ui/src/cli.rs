@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
 use pickglass::design::{Family, Srgb};
 use pickglass::exemplar::COARSEST_LEVEL;
 use pickglass::render::Backing;
 use pickglass::scene::{PRESET_NAMES, View};
 
+use crate::help;
 use crate::values::{self, PicturePath, SettArg, Size, Turned, VolumePath};
 use crate::window::Restarts;
 use pickglass::cloth::Region;
@@ -21,7 +23,7 @@ use pickglass::text::shell_word;
 
 /// Look closely at cloth that has not been woven yet.
 #[derive(Debug, Parser)]
-#[command(name = "pickglass", version, args_conflicts_with_subcommands = true)]
+#[command(name = "pickglass", version, args_conflicts_with_subcommands = true, after_help = help::PROGRAM)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
@@ -33,6 +35,7 @@ pub struct Cli {
 #[derive(Debug, Args)]
 pub struct WindowArgs {
     /// A design (.ron), a draft, loom or image file, or a preset's name
+    #[arg(value_hint = ValueHint::FilePath)]
     pub design: Option<String>,
     #[command(flatten)]
     pub sett: SettArgs,
@@ -71,9 +74,26 @@ pub enum Command {
     Weaves(WeavesArgs),
     /// Write a window of the cloth as voxels, or its yarns as geometry
     Volume(Box<VolumeArgs>),
+    /// Print what a shell needs to complete command lines
+    Completions(CompletionsArgs),
+    /// Write man pages, one of each command
+    Man(ManArgs),
 }
 
 #[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManArgs {
+    /// The folder to write them into; made if it is not there
+    pub folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = help::WEAVES)]
 pub struct WeavesArgs {
     /// A weave's name: draws its repeat; without it, lists all
     pub name: Option<String>,
@@ -169,9 +189,10 @@ impl ImageArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = help::CHECK)]
 pub struct CheckArgs {
     /// A design (.ron), a draft, loom or image file, or a preset's name
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub design: String,
     #[command(flatten)]
     pub sett: SettArgs,
@@ -183,9 +204,10 @@ pub struct CheckArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = help::CONVERT)]
 pub struct ConvertArgs {
     /// A design (.ron), a draft, loom or image file, or a preset's name
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: String,
     #[arg(value_name = "OUT", help = written())]
     pub output: PathBuf,
@@ -221,6 +243,7 @@ pub struct LoomArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = help::POSTERIZE)]
 pub struct PosterizeArgs {
     /// A picture: PNG, JPEG, BMP, TIFF or WebP
     pub image: PathBuf,
@@ -275,8 +298,10 @@ pub struct PosterizeArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = help::SYNTHESIZE)]
 pub struct SynthesizeArgs {
     /// A design (.ron), a draft, loom or image file, or a preset's name
+    #[arg(value_hint = ValueHint::FilePath)]
     pub design: String,
     /// How blocks are assigned to crossings
     #[arg(long, default_value_t = Method::Dp, value_parser = values::named::<Method>())]
@@ -311,10 +336,12 @@ fn renderers() -> String {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = help::still())]
 #[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
 pub struct StillArgs {
     /// A design (.ron), a draft, loom or image file, a preset's name or a volume (.vol, .nrrd,
     /// .nhdr, .mhd, .mha)
+    #[arg(value_hint = ValueHint::FilePath)]
     pub design: String,
     /// The picture to write, .png or .exr
     #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
@@ -382,8 +409,10 @@ pub struct StillArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = help::VOLUME)]
 pub struct VolumeArgs {
     /// A design (.ron), a draft (.wif) or a preset's name
+    #[arg(value_hint = ValueHint::FilePath)]
     pub design: String,
     /// The file to write: voxels as .vol, .vdb, .nrrd, .mhd or .tif, yarns as .obj or .glb
     #[arg(short, long, value_name = "OUT", value_parser = values::volume_path)]

@@ -1,5 +1,5 @@
 //! Everything one can do in the window, once: menus, shortcuts, tooltips, the palette, the
-//! help sheet and the README's table are made from this list.
+//! help sheet and `ui/docs/keys.md` are made from this list.
 
 use std::sync::LazyLock;
 
@@ -443,7 +443,7 @@ fn spread(text: &str, typed: &str) -> Option<usize> {
     Some(skipped)
 }
 
-/// The table as Markdown, for the README.
+/// The table as Markdown.
 #[cfg(test)]
 pub fn markdown() -> String {
     let names = egui::ModifierNames::NAMES;
@@ -475,16 +475,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn the_readme_has_this_table() {
-        let readme = include_str!("../../README.md");
-        assert!(
-            readme.contains(&markdown()),
-            "put into README.md:\n{}",
-            markdown()
-        );
     }
 
     #[test]

@@ -7,6 +7,9 @@
 mod cli;
 mod command_table;
 mod commands;
+#[cfg(test)]
+mod docs;
+mod help;
 mod idle;
 mod interrupt;
 mod late;

@@ -39,6 +39,11 @@ pub fn say(said: &impl Lines) -> anyhow::Result<()> {
     write_out(&shown.join("\n"))
 }
 
+/// Writes a text of the program's own to standard output as it is.
+pub fn say_text(text: &str) -> anyhow::Result<()> {
+    write_out(text.trim_end())
+}
+
 /// Writes `text` to standard output. A broken pipe ends the writing in silence.
 fn write_out(text: &str) -> anyhow::Result<()> {
     let mut stdout = std::io::stdout().lock();

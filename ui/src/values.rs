@@ -4,14 +4,14 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use pickglass::cloth::Region;
 use pickglass::formats::volume::VolumeFormat;
 use pickglass::formats::yarns;
 use pickglass::limits;
 use pickglass::plan::{self, Dial, Effect, EffectBase, EffectChoice, Settings};
 use pickglass::scene::PRESET_NAMES;
-use strum::VariantArray;
+use strum::{EnumMessage, VariantArray};
 
 use pickglass::engine::{Heading, LightChoice};
 
@@ -224,14 +224,19 @@ pub fn light(text: &str) -> Result<LightChoice, String> {
     }
 }
 
-/// One of the names of an enum of the library.
+/// One of the names of an enum of the library; the help says what each is.
 pub fn named<T>() -> impl TypedValueParser<Value = T>
 where
-    T: VariantArray + FromStr + Copy + Into<&'static str> + Send + Sync + 'static,
+    T: VariantArray + EnumMessage + FromStr + Copy + Into<&'static str> + Send + Sync + 'static,
 {
-    let names = T::VARIANTS.iter().map(|&value| value.into());
+    let values = T::VARIANTS.iter().map(|value| {
+        let about = value.get_documentation().unwrap_or_default();
+        let about = about.split_whitespace().collect::<Vec<_>>().join(" ");
+        let name: &'static str = (*value).into();
+        PossibleValue::new(name).help(about.trim_end_matches('.').to_owned())
+    });
     // The parser before has let only these names through.
-    PossibleValuesParser::new(names.collect::<Vec<&'static str>>())
+    PossibleValuesParser::new(values.collect::<Vec<_>>())
         .map(|name| name.parse().unwrap_or(T::VARIANTS[0]))
 }
 

@@ -1,7 +1,7 @@
 //! A design becomes an image: its weave, its artwork, or the yarns of one direction.
 
 use std::collections::{BTreeMap, BTreeSet};
-use strum::{EnumString, IntoStaticStr, VariantArray};
+use strum::{EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 use super::import::looks_like_default;
 use super::raster::{MAX_COLOURS, Pixels, Raster};
@@ -11,7 +11,9 @@ use crate::design::{
 };
 
 /// What of a design an image shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, EnumMessage, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum ImageContent {
     /// The weave, 1 bit a crossing: what looms take.

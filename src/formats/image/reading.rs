@@ -2,10 +2,12 @@
 
 use std::fmt;
 
-use strum::{EnumString, IntoStaticStr, VariantArray};
+use strum::{EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 /// What the pixels of an image stand for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, EnumMessage, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum ImageAs {
     /// The weave: one pixel a crossing, black or white.
@@ -21,7 +23,9 @@ pub enum ImageAs {
 }
 
 /// Which thread a black pixel puts on the face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, EnumMessage, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Black {
     /// Black = warp up, as nearly all looms and programs have it.
@@ -37,7 +41,9 @@ pub enum Black {
 /// twill in the cloth. Pick 1 is woven first and lies at the bottom, so an image that
 /// starts at a top corner is turned by 180°. The side on which it counts ends changes
 /// numbers only. Both are remembered, and the image is written back as it was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, EnumMessage, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Corner {
     /// The bottom row is pick 1, the left column end 1.
@@ -74,7 +80,9 @@ impl Corner {
 }
 
 /// What tells one region or yarn of an image from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, EnumMessage, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Key {
     /// The displayed colour. Numbers follow lightness, from dark to light: programs sort
@@ -101,7 +109,9 @@ pub struct ImageReading {
 }
 
 /// The habits of a maker's images.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, EnumMessage, EnumString, IntoStaticStr, VariantArray,
+)]
 #[strum(serialize_all = "lowercase")]
 pub enum Convention {
     /// Digital Weaving Norway's TC2, and bitmaps made for it in Photoshop: 1 bit, black =

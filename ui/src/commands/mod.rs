@@ -4,6 +4,7 @@
 mod check;
 mod convert;
 mod posterize;
+mod shell;
 mod still;
 mod synthesize;
 mod volume;
@@ -28,6 +29,8 @@ pub fn run(cli: Cli, begun: Instant) -> anyhow::Result<()> {
         Some(Command::Still(args)) => still::run(&args, begun),
         Some(Command::Weaves(args)) => weaves::run(&args),
         Some(Command::Volume(args)) => volume::run(&args),
+        Some(Command::Completions(args)) => shell::completions(&args),
+        Some(Command::Man(args)) => shell::man(&args),
     }
 }
 
