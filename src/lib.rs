@@ -1,4 +1,4 @@
-//! Pickglass: woven cloth from drafts, path-traced.
+//! Pickglass: woven cloth from drafts, path-traced. What becomes of what:
 //!
 //! ```text
 //!   formats ──▶ design ◀── edit          what is made: weave, yarns, sett
@@ -15,6 +15,11 @@
 //!                 ▼
 //!   plan ─▶ engine ─▶ formats            what is simulated; stills, sheets, first sight
 //! ```
+//!
+//! A *crossing* is where an end (of the warp) and a pick (of the weft) cross; an *exemplar* is a
+//! small piece of cloth as voxels, a *block* one crossing of it; *edge fixing* closes the *seams*
+//! between blocks; a *tap* is one look into voxels; *first sight* is the picture that is there
+//! before any path is traced.
 //!
 //! A crossing becomes a pixel like this: [`synthesis`] gives each crossing of the drawdown the
 //! block of an exemplar ([`exemplar`], made of the curves of [`yarn`]); [`cloth`] finds the
@@ -39,8 +44,10 @@
 //! ```
 //!
 //! # The house
-//! Imports go up this table only. Those in italics have still to go; `tests/house.rs` keeps
-//! the rest as it is.
+//! Imports go up this table only, and `tests/house.rs` keeps both as they are: an import that
+//! is not in its row fails, and so does a row that allows more than is needed. One that is
+//! needed and points up is written into its row; one that points down asks for the piece that
+//! both need, in a folder above both.
 //!
 //! | folder | what it is | imports |
 //! |---|---|---|

@@ -358,7 +358,7 @@ mod tests {
 
     #[test]
     fn every_family_is_measured_at_its_own_roughness_and_all_around_it() {
-        for family in Family::ALL {
+        for &family in Family::ALL {
             let alphas: Vec<f32> = (curves().iter())
                 .filter(|curve| curve.family == family)
                 .map(|curve| curve.alpha)

@@ -232,7 +232,7 @@ mod tests {
     fn wild_yarns_give_finite_colours() {
         let (dark, light) = yarns();
         for share in [0.0, 1.0] {
-            for family in Family::ALL {
+            for &family in Family::ALL {
                 let odd = Yarn {
                     surface_share: share,
                     family,

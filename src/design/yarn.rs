@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 /// Index of a yarn in a design's yarn list.
 #[derive(
@@ -75,7 +76,21 @@ impl FromStr for Srgb {
 }
 
 /// The families of yarn whose recipes are built in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[strum(serialize_all = "lowercase")]
 pub enum Family {
     /// Ring-spun two-ply cotton.
     Cotton,
@@ -104,7 +119,7 @@ pub struct FamilyNumbers {
 
 impl Family {
     /// Every family.
-    pub const ALL: [Self; 4] = [Self::Cotton, Self::Silk, Self::Wool, Self::Linen];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// The family's usual count, density, gloss and cover.
     pub fn numbers(self) -> FamilyNumbers {
@@ -129,12 +144,7 @@ impl Family {
 
     /// The family's name as commands and messages write it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Cotton => "cotton",
-            Self::Silk => "silk",
-            Self::Wool => "wool",
-            Self::Linen => "linen",
-        }
+        self.into()
     }
 }
 
@@ -142,8 +152,7 @@ impl FromStr for Family {
     type Err = FamilyError;
 
     fn from_str(text: &str) -> Result<Self, FamilyError> {
-        Self::ALL
-            .into_iter()
+        (Self::ALL.iter().copied())
             .find(|family| text.trim().eq_ignore_ascii_case(family.name()))
             .ok_or_else(|| FamilyError(text.chars().take(40).collect()))
     }
@@ -151,8 +160,17 @@ impl FromStr for Family {
 
 /// A name that is no yarn family.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("\"{0}\" is not a yarn family: use cotton, silk, wool or linen")]
+#[error("\"{0}\" is not a yarn family: use {names}", names = names())]
 pub struct FamilyError(pub String);
+
+/// All families: "cotton, silk, wool or linen".
+fn names() -> String {
+    let names: Vec<&str> = Family::ALL.iter().map(|family| family.name()).collect();
+    match names.split_last() {
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
 
 /// One yarn of a design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::StillError;
+use super::developing::Developing;
 use super::request::StillReport;
 use super::shot::Shot;
 use crate::design::Design;
-use crate::film::{Denoise, Film, Tone};
+use crate::film::Film;
 use crate::job::Job;
 
 /// Draws one subject: the cloth of a design, or voxels that were read.
@@ -52,28 +53,20 @@ pub struct Pass<'p> {
     pub error: Option<f64>,
     /// Linear means, variances and features.
     pub film: &'p Film,
-    /// How it is shown, and whether it is denoised for that.
-    pub(super) shown: (Tone, bool),
+    pub(super) developing: Developing,
 }
 
 impl Pass<'_> {
     /// sRGB with straight alpha, top row first.
     pub fn rgba(&self) -> Vec<u8> {
-        let (tone, _) = self.shown;
-        let picture = match self.clean(&Job::new()) {
-            Some(clean) => tone.picture_of(self.film, &clean),
-            None => tone.picture(self.film),
-        };
+        let picture = self.developing.picture(self.film);
         let pixels = picture.pixels.iter();
         pixels.flat_map(|pixel| pixel.map(byte)).collect()
     }
 
     /// The film's radiances denoised, where they are and the job is not cancelled.
     pub fn clean(&self, job: &Job) -> Option<Vec<Vec3>> {
-        let (_, denoise) = self.shown;
-        denoise
-            .then(|| Denoise::default().apply(self.film, job).ok())
-            .flatten()
+        self.developing.clean(self.film, job)
     }
 }
 

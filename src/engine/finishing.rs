@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 
 use super::StillRequest;
-use crate::film::{Denoise, Film, Sample, Tone};
+use super::developing::Developing;
+use crate::film::{Film, Sample, Tone};
 use crate::formats::{exr, png};
 use crate::job::Job;
 use crate::random::Random;
@@ -39,13 +40,11 @@ fn time(request: &StillRequest, tone: Tone) -> Duration {
     let strip = noise(width, rows);
     let begun = Instant::now();
     let showing = request.settings.showing;
-    let clean = (showing.denoise)
-        .then(|| Denoise::default().apply(&strip, &Job::new()).ok())
-        .flatten();
-    let picture = match clean {
-        Some(clean) => tone.picture_of(&strip, &clean),
-        None => tone.picture(&strip),
+    let developing = Developing {
+        tone,
+        denoise: showing.denoise,
     };
+    let picture = developing.picture(&strip);
     // What cannot be encoded takes no time; writing it says why.
     let _ = png::encode(&picture, showing.png_depth, &png::Metadata::default());
     let shown = begun.elapsed();

@@ -24,7 +24,6 @@ use crate::design::{Design, Positions, WeavePattern, YarnId};
 use crate::exemplar::Pair;
 use crate::film::{Film, Sample, Tone};
 use crate::job::Job;
-use crate::plan::Subject;
 use crate::render::Backing;
 use crate::scene::{Camera, Pose};
 use crate::synthesis::{Catalogue, Side, key_of};
@@ -193,12 +192,12 @@ impl Crossing {
 pub(super) static SIGHT: Renderer = Renderer {
     name: NAME,
     about: "first sight, at once, without paths",
-    subjects: &[Subject::Cloth],
     // It is as it is: no effect can be had or left out.
     effects: &[],
     dials: |dial| dial.name == "png-bits",
     refines: false,
     make,
+    of_voxels: None,
 };
 
 const NAME: &str = "sight";
@@ -242,7 +241,7 @@ impl Engine for FirstSight {
             seconds,
             error: None,
             film: &film,
-            shown: (shot.tone(), false),
+            developing: shot.developing(),
         });
         let report = StillReport {
             renderer: NAME.to_owned(),

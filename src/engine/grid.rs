@@ -6,14 +6,12 @@ use std::time::Instant;
 
 use super::exposure::Pass;
 use super::renderer::Renderer;
-use super::shot::{Shot, camera_at, lights};
+use super::shot::{Shot, camera_over, lights};
 use super::still::{Shown, Still, develop};
-use super::tracer::trace;
 use super::{StillError, StillRequest, finishing};
 use crate::formats::volume::{self, Attachment, mitsuba};
 use crate::job::Job;
 use crate::plan::{Effect, Subject};
-use crate::scene::{Bounds, Camera};
 use crate::volume::Taps;
 use crate::volume::source::Frame;
 
@@ -43,18 +41,15 @@ pub fn render_grid(
     };
     let job = &finishing::bounded(request, job);
     let file = volume::read_scaled(path, taps, voxel_mm, job)?;
-    let reading = ("reading".to_owned(), begun.elapsed().as_secs_f64());
-    let camera = camera_over(crate::render::Medium::bounds(&file.grid), request)?;
-    let exposure = trace(&file.grid, &camera, &shot, vec![reading], job, on_pass)?;
+    let reading = begun.elapsed().as_secs_f64();
+    let engine = renderer.over(file.grid)?;
+    let mut exposure = engine.expose(&shot, job, on_pass)?;
+    let report = &mut exposure.report;
+    report.seconds.insert(0, ("reading".to_owned(), reading));
+    report.total_seconds += reading;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let shown = Shown::Volume(name.into_owned());
     Ok((develop(&shot, exposure, shown), file.warnings))
-}
-
-/// The camera of a request over a box: its middle and its width, unless the request says.
-fn camera_over(bounds: Bounds, request: &StillRequest) -> Result<Camera, StillError> {
-    let middle = (bounds.min + bounds.max) * 0.5;
-    camera_at(request, middle, bounds.max.x - bounds.min.x)
 }
 
 /// What stands beside an exported `.vol` so that Mitsuba shows it as `request` does.

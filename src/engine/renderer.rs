@@ -9,7 +9,8 @@ use super::request::StillRequest;
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
 use crate::job::Job;
-use crate::plan::{Decider, Dial, DialError, Effect, Plan, Subject};
+use crate::plan::{Dial, DialError, Effect, Plan, Subject};
+use crate::volume::DenseGrid;
 
 /// One engine.
 pub struct Renderer {
@@ -17,15 +18,16 @@ pub struct Renderer {
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,
-    /// What it draws.
-    pub subjects: &'static [Subject],
     /// The effects that it can simulate.
     pub effects: &'static [Effect],
     /// Whether a dial changes what it draws.
     pub dials: fn(&Dial) -> bool,
-    /// Whether more time makes a better picture of it.
+    /// Whether it begins with noise, and more time makes a better picture of it.
     pub refines: bool,
+    /// How it is made for the cloth of a design.
     pub(super) make: fn(&Making<'_>) -> Result<Box<dyn Engine>, StillError>,
+    /// How it is made for voxels that were read, where it draws them.
+    pub(super) of_voxels: Option<fn(DenseGrid) -> Box<dyn Engine>>,
 }
 
 /// What an engine for the cloth of a design is made from.
@@ -42,7 +44,7 @@ impl Renderer {
     /// # Errors
     /// [`StillError::Subject`].
     pub fn check(&self, subject: Subject) -> Result<(), StillError> {
-        match self.subjects.contains(&subject) {
+        match subject == Subject::Cloth || self.of_voxels.is_some() {
             true => Ok(()),
             false => Err(StillError::Subject(self.name)),
         }
@@ -53,14 +55,9 @@ impl Renderer {
     /// # Errors
     /// When a setting lies outside of what its dial takes.
     pub fn plan(&self, request: &StillRequest, subject: Subject) -> Result<Plan, DialError> {
-        let mut plan = request.plan(subject)?;
-        for planned in &mut plan.effects {
-            if planned.on && !self.effects.contains(&planned.effect) {
-                planned.on = false;
-                planned.why = "this renderer has none of it";
-                planned.by = Decider::Scene;
-            }
-        }
+        let mut plan = request.plan(subject)?.limited_to(self.effects);
+        // What does not refine has no noise to filter out.
+        plan.showing.denoise &= self.refines;
         Ok(plan)
     }
 
@@ -81,6 +78,15 @@ impl Renderer {
             store,
             job,
         })
+    }
+
+    /// Makes it ready to draw voxels.
+    ///
+    /// # Errors
+    /// [`StillError::Subject`] where it draws none.
+    pub(super) fn over(&self, grid: DenseGrid) -> Result<Box<dyn Engine>, StillError> {
+        let make = self.of_voxels.ok_or(StillError::Subject(self.name))?;
+        Ok(make(grid))
     }
 }
 

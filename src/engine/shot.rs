@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::StillError;
+use super::developing::Developing;
 use super::request::{LightChoice, StillRequest};
 use crate::design::Design;
 use crate::film::{Denoise, Pixel, Tone};
@@ -12,7 +13,7 @@ use crate::formats::exr;
 use crate::limits;
 use crate::memory;
 use crate::plan::Plan;
-use crate::scene::{Camera, LightRig, Pose, View};
+use crate::scene::{Bounds, Camera, LightRig, Pose, View};
 
 /// Degrees across the picture where the eye has a direction of its own.
 const FIELD_OF_VIEW: f32 = 30.0;
@@ -42,9 +43,12 @@ impl<'r> Shot<'r> {
     }
 
     /// How its film is shown.
-    pub fn tone(&self) -> Tone {
-        Tone {
-            exposure: self.request.exposure_ev,
+    pub(super) fn developing(&self) -> Developing {
+        Developing {
+            tone: Tone {
+                exposure: self.request.exposure_ev,
+            },
+            denoise: self.plan.showing.denoise,
         }
     }
 }
@@ -153,6 +157,12 @@ pub(super) fn camera_at(
         true => camera.turned(),
         false => camera,
     })
+}
+
+/// The camera of a request over a box: its middle and its width, unless the request says.
+pub(super) fn camera_over(bounds: Bounds, request: &StillRequest) -> Result<Camera, StillError> {
+    let middle = (bounds.min + bounds.max) * 0.5;
+    camera_at(request, middle, bounds.max.x - bounds.min.x)
 }
 
 /// Bytes a pixel of a picture that is shown and written: colours, samples, encoded bytes.

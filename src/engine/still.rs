@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::again::Again;
+use super::developing::Developing;
 use super::exposure::{Engine, Exposure, Pass};
 use super::prepare::coloured;
 use super::renderer::Renderer;
@@ -16,10 +17,11 @@ use super::{StillError, finishing};
 use crate::cloth::PreparedCloth;
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
-use crate::film::{Denoise, Film, Tone};
+use crate::film::Film;
+use crate::formats::png::Depth;
 use crate::formats::{exr, png};
 use crate::job::Job;
-use crate::plan::{ShowingSettings, Subject};
+use crate::plan::Subject;
 
 /// Takes one picture of a prepared cloth with the path tracer; `on_pass` sees it after every
 /// pass.
@@ -76,8 +78,8 @@ pub(super) fn develop(shot: &Shot<'_>, exposure: Exposure, shown: Shown) -> Stil
         again: Again::new(shot.request, &exposure.report),
         report: exposure.report,
         film: exposure.film,
-        tone: shot.tone(),
-        showing: shot.plan.showing,
+        developing: shot.developing(),
+        png_depth: shot.plan.showing.png_depth,
         pixels_per_mm: exposure.pixels_per_mm,
         shown,
     }
@@ -97,8 +99,8 @@ pub struct Still {
     pub report: StillReport,
     /// Linear means, variances and features.
     pub film: Film,
-    pub(super) tone: Tone,
-    pub(super) showing: ShowingSettings,
+    developing: Developing,
+    png_depth: Depth,
     pub(super) pixels_per_mm: f32,
     shown: Shown,
     again: Again,
@@ -128,17 +130,12 @@ impl Still {
     /// The film's radiances denoised; `None` where the request said not to, or the job is
     /// cancelled.
     pub fn clean(&self, job: &Job) -> Option<Vec<Vec3>> {
-        let clean = (self.showing.denoise).then(|| Denoise::default().apply(&self.film, job));
-        clean?.ok()
+        self.developing.clean(&self.film, job)
     }
 
     /// The picture as shown: denoised unless the request said no, sRGB with straight alpha.
     pub fn picture(&self) -> crate::film::Picture {
-        // Nobody cancels this one.
-        match self.clean(&Job::new()) {
-            Some(clean) => self.tone.picture_of(&self.film, &clean),
-            None => self.tone.picture(&self.film),
-        }
+        self.developing.picture(&self.film)
     }
 
     /// What the picture's file says of it.
@@ -179,7 +176,7 @@ impl Still {
                     pixels_per_mm: Some(self.pixels_per_mm),
                     texts: self.texts(),
                 };
-                png::write(path, &self.picture(), self.showing.png_depth, &metadata)?;
+                png::write(path, &self.picture(), self.png_depth, &metadata)?;
             }
             Some(ending) if ending.eq_ignore_ascii_case("exr") => {
                 exr::write(path, &self.film, self.pixels_per_mm, &self.texts())?;

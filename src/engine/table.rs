@@ -53,7 +53,8 @@ mod tests {
     fn what_an_engine_has_none_of_is_off_and_says_so() {
         let request = StillRequest::default();
         let plan = first_sight::SIGHT.plan(&request, Subject::Cloth).unwrap();
-        assert!(!plan.on(Effect::Hairs));
+        assert!(!plan.on(Effect::Hairs) && !plan.render.shadows);
+        assert!(!plan.showing.denoise, "it has no noise");
         let plan = reference().plan(&request, Subject::Cloth).unwrap();
         assert!(plan.on(Effect::Hairs));
         assert!(first_sight::SIGHT.check(Subject::Voxels).is_err());

@@ -7,24 +7,25 @@ use super::exposure::{Engine, Exposure, Pass};
 use super::prepare::prepare;
 use super::renderer::{Making, Renderer};
 use super::request::{StillReport, StillRequest};
-use super::shot::{Shot, camera, in_view};
+use super::shot::{Shot, camera, camera_over, in_view};
 use crate::cloth::{PreparedCloth, REACH_MM};
 use crate::design::Design;
 use crate::film::Film;
 use crate::job::Job;
-use crate::plan::{Effect, Subject};
+use crate::plan::Effect;
 use crate::render::{self, Both, Medium, Scatterer};
 use crate::scene::{Bounds, Camera};
+use crate::volume::DenseGrid;
 
 /// Its row of the table.
 pub(super) static CPU: Renderer = Renderer {
     name: NAME,
     about: "the path tracer on the processor",
-    subjects: &[Subject::Cloth, Subject::Voxels],
     effects: Effect::ALL,
     dials: |_| true,
     refines: true,
     make,
+    of_voxels: Some(|grid| Box::new(Voxels(grid))),
 };
 
 const NAME: &str = "cpu";
@@ -75,8 +76,32 @@ impl Engine for PreparedCloth {
     }
 }
 
+/// Voxels that were read.
+struct Voxels(DenseGrid);
+
+impl Engine for Voxels {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn expose(
+        &self,
+        shot: &Shot<'_>,
+        job: &Job,
+        on_pass: &mut dyn FnMut(&Pass<'_>),
+    ) -> Result<Exposure, StillError> {
+        let camera = camera_over(Medium::bounds(&self.0), shot.request)?;
+        trace(&self.0, &camera, shot, Vec::new(), job, on_pass)
+    }
+
+    /// Voxels have the colours that their file gives them.
+    fn recolour(&mut self, _: &Arc<Design>) -> bool {
+        false
+    }
+}
+
 /// Traces anything; `stages` is what went before, in seconds.
-pub(super) fn trace<S: Scatterer>(
+fn trace<S: Scatterer>(
     scatterer: &S,
     camera: &Camera,
     shot: &Shot<'_>,
@@ -85,7 +110,7 @@ pub(super) fn trace<S: Scatterer>(
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<Exposure, StillError> {
     let (request, plan) = (shot.request, &shot.plan);
-    let shown = (shot.tone(), plan.showing.denoise);
+    let developing = shot.developing();
     let job = request.stop.bounds(job);
     let mut show = |film: &Film, progress: &render::Progress| {
         on_pass(&Pass {
@@ -93,7 +118,7 @@ pub(super) fn trace<S: Scatterer>(
             seconds: progress.seconds,
             error: known(progress.error.error),
             film,
-            shown,
+            developing,
         });
     };
     let (lights, settings) = (&shot.lights, &plan.render);

@@ -120,6 +120,8 @@ pub enum Decider {
     Scene,
     /// Whoever asked for the picture.
     Person,
+    /// The engine that draws, which has none of it.
+    Renderer,
 }
 
 /// Whether one effect is simulated.

@@ -43,30 +43,50 @@ impl Plan {
         subject: Subject,
     ) -> Result<Self, DialError> {
         check(settings)?;
-        let (mut cloth, mut render) = (settings.cloth, settings.tracing.clone());
         let effects = choice.plan(subject);
-        for &Planned { effect, on, .. } in &effects {
-            match effect {
-                Effect::Shadows => render.shadows = on,
-                Effect::Sky => render.sky = on,
-                Effect::Tap => cloth.tap = on,
-                // They are a layer of their own, made where they are on.
-                Effect::Hairs => {}
-                // What these do is what their dials are set to.
-                Effect::Multiple if on => {}
-                Effect::EdgeFixing if on => {}
-                Effect::Randomisation if on => {}
-                Effect::Multiple => render.max_order = 1,
-                Effect::EdgeFixing => cloth.synthesis.rank = Rank::Off,
-                Effect::Randomisation => cloth.synthesis.patch = 0,
-            }
-        }
-        Ok(Self {
-            cloth,
-            render,
+        let mut plan = Self {
+            cloth: settings.cloth,
+            render: settings.tracing.clone(),
             showing: settings.showing,
-            effects,
-        })
+            effects: Vec::new(),
+        };
+        for planned in &effects {
+            plan.simulate(planned.effect, planned.on);
+        }
+        Ok(Self { effects, ..plan })
+    }
+
+    /// Has each system do its part of an effect, or not.
+    fn simulate(&mut self, effect: Effect, on: bool) {
+        let synthesis = &mut self.cloth.synthesis;
+        match effect {
+            Effect::Shadows => self.render.shadows = on,
+            Effect::Sky => self.render.sky = on,
+            Effect::Tap => self.cloth.tap = on,
+            // They are a layer of their own, made where they are on.
+            Effect::Hairs => {}
+            // What these do is what their dials are set to.
+            Effect::Multiple | Effect::EdgeFixing | Effect::Randomisation if on => {}
+            Effect::Multiple => self.render.max_order = 1,
+            Effect::EdgeFixing => synthesis.rank = Rank::Off,
+            Effect::Randomisation => synthesis.patch = 0,
+        }
+    }
+
+    /// The same for an engine that simulates these effects and no other.
+    pub fn limited_to(mut self, effects: &[Effect]) -> Self {
+        let lacking = |planned: &&mut Planned| planned.on && !effects.contains(&planned.effect);
+        let mut off = Vec::new();
+        for planned in self.effects.iter_mut().filter(lacking) {
+            planned.on = false;
+            planned.why = "this renderer has none of it";
+            planned.by = Decider::Renderer;
+            off.push(planned.effect);
+        }
+        for effect in off {
+            self.simulate(effect, false);
+        }
+        self
     }
 
     /// The same with a seed for every random choice.
@@ -109,6 +129,27 @@ mod tests {
     }
 
     #[test]
+    fn what_an_engine_lacks_is_no_work_of_it_either() {
+        let plan = Plan::new(
+            &Settings::default(),
+            &EffectChoice::default(),
+            Subject::Cloth,
+        );
+        let plan = plan.unwrap().limited_to(&[Effect::Sky, Effect::Tap]);
+        assert!(plan.on(Effect::Sky) && plan.render.sky && plan.cloth.tap);
+        assert!(!plan.on(Effect::Shadows) && !plan.render.shadows);
+        assert_eq!((plan.render.max_order, plan.cloth.synthesis.patch), (1, 0));
+        let by = |effect| {
+            plan.effects
+                .iter()
+                .find(|known| known.effect == effect)
+                .map(|p| p.by)
+        };
+        assert_eq!(by(Effect::Shadows), Some(Decider::Renderer));
+        assert_eq!(by(Effect::Sky), Some(Decider::Scene));
+    }
+
+    #[test]
     fn by_themselves_systems_are_as_they_are() {
         let choice = EffectChoice::default();
         let plan = Plan::new(&Settings::default(), &choice, Subject::Cloth).unwrap();
@@ -133,6 +174,15 @@ mod tests {
                 let what = format!("{}={value}", dial.name);
                 assert_eq!(turned.cloth != usual.cloth, changed && cloth, "{what}");
                 assert_eq!(turned.render != usual.render, changed && picture, "{what}");
+                // What decides on blocks, and on the voxels that they are copied from.
+                let blocks =
+                    |cloth: &ClothSettings| (cloth.synthesis.method, cloth.synthesis.patch);
+                let assignment = dial.invalidates == Invalidates::Assignment;
+                let another = blocks(&turned.cloth) != blocks(&usual.cloth);
+                assert_eq!(another, changed && assignment, "{what}");
+                let exemplars = dial.invalidates == Invalidates::Exemplars;
+                let another = turned.cloth.level != usual.cloth.level;
+                assert_eq!(another, changed && exemplars, "{what}");
                 let shown = turned.showing != usual.showing;
                 assert_eq!(shown, changed && !cloth && !picture, "{what}");
             }

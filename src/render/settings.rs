@@ -1,8 +1,6 @@
-//! Every approximation of the tracer as a named dial, with its crude and its reference
-//! end.
+//! What the tracer simulates and how closely.
 
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 /// What lies behind the cloth.
@@ -13,8 +11,6 @@ use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
     PartialEq,
     Eq,
     Default,
-    Serialize,
-    Deserialize,
     Display,
     EnumString,
     EnumMessage,
@@ -36,7 +32,7 @@ pub enum Backing {
 }
 
 /// What a camera ray that meets nothing brings home.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Background {
     /// Nothing, with alpha 0.
     #[default]
@@ -47,10 +43,10 @@ pub enum Background {
     Colour(Vec3),
 }
 
-/// The dials of a picture. A dial's crude end is fast and wrong or noisy, its reference
-/// end is what everything else is measured against.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+/// What a picture simulates, how closely, and when it is done. Some are dials (see
+/// [`crate::plan`]): their crude end is fast and wrong or noisy, their reference end is what
+/// everything else is measured against.
+#[derive(Debug, Clone, PartialEq)]
 pub struct RenderSettings {
     /// Names the random numbers; same seed and settings, same picture bit for bit.
     pub seed: u64,
@@ -100,32 +96,6 @@ impl Default for RenderSettings {
             backing_layers: 4,
             backing_slide_mm: [0.37, 0.23],
             background: Background::Transparent,
-        }
-    }
-}
-
-impl RenderSettings {
-    /// The crude end of every dial: what a first preview uses.
-    pub fn crude() -> Self {
-        Self {
-            max_order: 1,
-            shadows: false,
-            roulette_order: 1,
-            shadow_roulette: 1.0,
-            pass_spp: 1,
-            spp: 1,
-            ..Self::default()
-        }
-    }
-
-    /// The reference end of every dial.
-    pub fn reference() -> Self {
-        Self {
-            max_order: 1024,
-            roulette_order: u32::MAX,
-            shadow_roulette: 0.0,
-            spp: 4096,
-            ..Self::default()
         }
     }
 }

@@ -1,9 +1,10 @@
 //! What is looked at from where, in which light: cameras, rays, lamps and skies.
 //!
 //! Space is the cloth's, in mm: x along the weft, y along the warp, z out of the face. A
-//! [`View`] of cloth in some [`Pose`] makes a [`Camera`], a camera the [`Ray`]s of its pixels; a [`LightRig`] is a
-//! [`Sky`] with [`Sun`]s, and any [`Environment`] answers what comes from a direction and
-//! chooses directions in proportion.
+//! [`View`] of cloth makes a [`Camera`], a camera the [`Ray`]s of its pixels. A [`Pose`] is the
+//! one rule of which side is up and which end is at the right. A [`LightRig`] is a [`Sky`] with
+//! [`Sun`]s, and any [`Environment`] answers what comes from a direction and chooses directions
+//! in proportion.
 
 pub mod camera;
 pub mod environment;

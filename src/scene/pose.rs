@@ -1,5 +1,6 @@
 //! How cloth lies before the eye: which side is up, and which end is at the right. Camera,
-//! light, first sight and the window all ask here.
+//! light, first sight and the window all ask here, by `View::pose` or `StillRequest::pose`; the
+//! tracer knows from the camera alone whether it looks up or down.
 
 use glam::Vec3;
 

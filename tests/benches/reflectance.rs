@@ -33,7 +33,7 @@ fn main() {
         .unwrap_or(USUAL_PATHS);
     let write = std::env::args().any(|word| word == "--write");
     let mut table = String::from("[\n");
-    for family in Family::ALL {
+    for &family in Family::ALL {
         let begun = Instant::now();
         let bench = Bench::new(family);
         eprintln!("{} {:.1} s", family.name(), begun.elapsed().as_secs_f64());

@@ -98,8 +98,11 @@ struct Plain {
 }
 
 /// One of every family; the exemplars are built once for all tests.
-static CLOTHS: LazyLock<Vec<Plain>> =
-    LazyLock::new(|| Family::ALL.map(|family| Plain::new(undyed(family))).into());
+static CLOTHS: LazyLock<Vec<Plain>> = LazyLock::new(|| {
+    (Family::ALL.iter())
+        .map(|&family| Plain::new(undyed(family)))
+        .collect()
+});
 
 /// The usual yarn of a family.
 fn undyed(family: Family) -> Yarn {

@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn every_family_is_measured_and_level_zero_stands_for_itself() {
-        for family in Family::ALL {
+        for &family in Family::ALL {
             let rows = || table().iter().filter(|row| row.family == family);
             assert!(rows().count() >= 3, "{family:?}");
             assert_eq!(LevelCorrection::of(family, &set(family, 44, 0)), None);

@@ -219,7 +219,7 @@ fn add_rows(name: &str, folder: &Path, paths: u32, rows: &mut Vec<Row>) {
 /// what holds for any yarns of a family, density alone, then the presets' exemplars, each
 /// with its gains.
 pub fn table(names: &[&str], folder: &Path, paths: u32) -> String {
-    let any = Family::ALL.into_iter().flat_map(nodes);
+    let any = Family::ALL.iter().copied().flat_map(nodes);
     std::fs::create_dir_all(folder).expect("a folder");
     let mut rows: Vec<Row> = any.map(|row| (row, Vec::new())).collect();
     for name in names {

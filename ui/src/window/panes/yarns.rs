@@ -195,7 +195,7 @@ impl Yarns {
                 let shown = families
                     .selected_text(yarn.family.name())
                     .show_ui(ui, |ui| {
-                        for family in Family::ALL {
+                        for &family in Family::ALL {
                             ui.selectable_value(&mut changed.family, family, family.name());
                         }
                     });

@@ -3,10 +3,10 @@
 //! One thread draws. A request first shows the cloth at first sight, within milliseconds
 //! and never interrupted, so that an edit or a drag always shows something; tracing, coarse
 //! at first, then adds to it what it knows better (`drawing`), until the picture is as good
-//! as the person wants it, and waits while nobody sees the window. A newer request ends the older one. The cloth follows edits; where its
-//! exemplars are not at hand yet, a coarse cloth is drawn and a second thread builds them
-//! meanwhile (`cloths`). All of it gives way to the window (`threads`). Dropping the
-//! worker ends all.
+//! as the person wants it, and waits while nobody sees the window. A newer request ends the
+//! older one. The cloth follows edits; where its exemplars are not at hand yet, a coarse cloth
+//! is drawn and a second thread builds them meanwhile (`cloths`). All of it gives way to the
+//! window (`threads`). Dropping the worker ends all.
 
 mod cloths;
 mod drawing;
