@@ -186,6 +186,14 @@ impl Crossing {
         let light = warp * texel.warp + weft * texel.weft;
         (light * table.tint(), texel.cover)
     }
+
+    /// Light of more of the same cloth, seen through a gap: as much of its warp as of its weft.
+    fn beneath(&self, table: &FaceTable) -> Vec3 {
+        let [warp, weft] = self.colours;
+        let mean = table.mean(self.key);
+        let brightness = (mean.warp + mean.weft) / mean.cover.max(1e-6);
+        (warp + weft) * table.tint() * (0.5 * BENEATH * brightness)
+    }
 }
 
 /// Its row of the table.
@@ -498,7 +506,7 @@ impl Sight<'_> {
         }
     }
 
-    /// Light and cover of a place of a crossing.
+    /// Light and cover of a place of a crossing and of what lies behind it.
     #[inline]
     fn light(&self, crossing: &Crossing, u: f32, v: f32) -> (Vec3, f32) {
         if self.close {
@@ -507,7 +515,7 @@ impl Sight<'_> {
         let Some(table) = self.tables.get(usize::from(crossing.set)) else {
             return (Vec3::ZERO, 0.0);
         };
-        crossing.lit(table, table.at(self.level, crossing.key, u, v))
+        self.lit(crossing, table, table.at(self.level, crossing.key, u, v))
     }
 
     /// As [`Self::light`] where pixels are smaller than the finest texels: in proportion
@@ -544,7 +552,7 @@ impl Sight<'_> {
                 let Some(table) = self.tables.get(usize::from(crossing.set)) else {
                     continue;
                 };
-                let (light, cover) = crossing.lit(table, table.texel(crossing.key, texel));
+                let (light, cover) = self.lit(&crossing, table, table.texel(crossing.key, texel));
                 let weight = along * across;
                 sum = (sum.0 + light * weight, sum.1 + cover * weight);
             }
@@ -552,29 +560,28 @@ impl Sight<'_> {
         sum
     }
 
-    /// Light and cover of a place of a crossing, and of what lies behind it; no crossing: of
-    /// what lies behind the cloth.
+    /// Light and cover of a place of a crossing and of what lies behind it; no crossing: of what
+    /// lies behind the cloth.
     #[inline]
     fn seen(&self, crossing: Option<&Crossing>, u: f32, v: f32) -> (Vec3, f32) {
-        let (light, cover) = crossing.map_or((Vec3::ZERO, 0.0), |here| self.light(here, u, v));
-        let gap = 1.0 - cover;
-        match (self.backing, crossing) {
-            (Backing::None, _) | (Backing::Itself, None) => (light, cover),
-            (Backing::White, _) => (light + PAPER * gap, 1.0),
-            (Backing::Black, _) => (light, 1.0),
-            (Backing::Itself, Some(crossing)) if gap > 0.0 => {
-                (light + self.beneath(crossing) * gap, 1.0)
-            }
-            (Backing::Itself, Some(_)) => (light, 1.0),
+        match (crossing, self.backing) {
+            (Some(crossing), _) => self.light(crossing, u, v),
+            (None, Backing::White) => (Vec3::splat(PAPER), 1.0),
+            (None, Backing::Black) => (Vec3::ZERO, 1.0),
+            (None, Backing::None | Backing::Itself) => (Vec3::ZERO, 0.0),
         }
     }
 
-    /// Light of more of the same cloth, seen through a gap of a crossing.
-    fn beneath(&self, crossing: &Crossing) -> Vec3 {
-        let Some(table) = self.tables.get(usize::from(crossing.set)) else {
-            return Vec3::ZERO;
-        };
-        let (light, cover) = crossing.lit(table, table.mean(crossing.key));
-        light * (BENEATH / cover.max(1e-6))
+    /// Light and cover of a texel of a crossing, and of what is seen through its gaps.
+    #[inline]
+    fn lit(&self, crossing: &Crossing, table: &FaceTable, texel: Texel) -> (Vec3, f32) {
+        let (light, cover) = crossing.lit(table, texel);
+        let gap = 1.0 - cover;
+        match self.backing {
+            Backing::None => (light, cover),
+            Backing::White => (light + PAPER * gap, 1.0),
+            Backing::Itself if gap > 0.0 => (light + crossing.beneath(table) * gap, 1.0),
+            Backing::Black | Backing::Itself => (light, 1.0),
+        }
     }
 }

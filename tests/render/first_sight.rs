@@ -273,13 +273,14 @@ fn a_large_jacquard_is_seen_whole() {
     }
 }
 
-/// Steps of green from one pixel of cloth to the next, across and down: the sum of their
-/// squares.
+/// Steps of green light from one pixel of cloth to the next, across and down: the sum of their
+/// squares. Of light, as that is what is blended: an even blend of display values it is not.
 fn unevenness(rgba: &[u8], width: usize) -> f64 {
     let pixels = rgba.len() / 4;
+    let light = |at: usize| f64::from(Srgb(0, rgba[4 * at + 1], 0).to_linear().y);
     let step = |[a, b]: [usize; 2]| {
         let cloth = [a, b].iter().all(|at| rgba[4 * at + 3] == u8::MAX);
-        cloth.then(|| f64::from(rgba[4 * a + 1].abs_diff(rgba[4 * b + 1])).powi(2))
+        cloth.then(|| (light(a) - light(b)).powi(2))
     };
     let across = (0..pixels - 1).filter(|at| (at + 1) % width > 0);
     let across = across.map(|at| [at, at + 1]);
@@ -306,10 +307,12 @@ fn close_by_neither_texels_nor_crossings_are_tiles() {
             let rgba = picture(&first(&design), &request, &name);
             unevenness(&rgba, 4 * pixels as usize)
         };
-        // With pixels as large as texels, each of them made so many across and down.
+        // With pixels as large as texels, each of them made so many across and down. An even
+        // blend of a step over so many pixels is an eighth of that; a picture that is closer
+        // also shows the blend with what lies beyond its edge.
         let tiles = f64::from(CLOSER) * look(12);
         let close = look(12 * CLOSER);
         println!("{name}: {:.2} of what tiles would be", close / tiles);
-        assert!(close < 0.3 * tiles, "{name}: {close} {tiles}");
+        assert!(close < 0.35 * tiles, "{name}: {close} {tiles}");
     }
 }
