@@ -46,7 +46,7 @@ impl Plan {
         let effects = choice.plan(subject);
         let mut plan = Self {
             cloth: settings.cloth,
-            render: settings.tracing.clone(),
+            render: settings.render.clone(),
             showing: settings.showing,
             effects: Vec::new(),
         };

@@ -11,7 +11,7 @@ pub struct Settings {
     /// Which block each crossing copies, how seams are closed, and the voxels looked at.
     pub cloth: ClothSettings,
     /// How paths are traced.
-    pub tracing: RenderSettings,
+    pub render: RenderSettings,
     /// How a film becomes a picture.
     pub showing: ShowingSettings,
 }

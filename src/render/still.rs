@@ -61,24 +61,24 @@ pub fn render<S: Scatterer>(
     on_pass: &mut dyn FnMut(&Film, &Progress),
 ) -> Result<RenderOutcome, Cancelled> {
     let from_below = camera.forward().z > 0.0;
-    let exposure = Exposure {
+    let frame = Frame {
         camera,
         settings,
         job,
     };
-    let passes = Passes { exposure, on_pass };
+    let passes = Passes { frame, on_pass };
     with_path(scatterer, lights, settings, from_below, passes)
 }
 
 /// The passes over a film, once the effects are chosen.
 struct Passes<'s> {
-    exposure: Exposure<'s>,
+    frame: Frame<'s>,
     on_pass: &'s mut dyn FnMut(&Film, &Progress),
 }
 
 /// What a single pass needs.
 #[derive(Clone, Copy)]
-struct Exposure<'s> {
+struct Frame<'s> {
     camera: &'s Camera,
     settings: &'s RenderSettings,
     job: &'s Job,
@@ -91,11 +91,11 @@ impl WithPath for Passes<'_> {
         self,
         path: &Path<'_, S, E, SHADOWS, PLANE>,
     ) -> Result<RenderOutcome, Cancelled> {
-        let Exposure {
+        let Frame {
             camera,
             settings,
             job,
-        } = self.exposure;
+        } = self.frame;
         let begun = Instant::now();
         let mut film = Film::new(camera.width(), camera.height());
         let mut counters = Counters::default();
@@ -105,7 +105,7 @@ impl WithPath for Passes<'_> {
             // 1, 1, 2, 4, … up to the size of a pass: the first picture comes soon.
             let spp = film.spp().clamp(1, settings.pass_spp.max(1));
             let spp = spp.min(wanted - film.spp());
-            counters += self.exposure.pass(path, &mut film, spp)?;
+            counters += self.frame.pass(path, &mut film, spp)?;
             error = estimate(&film);
             let progress = Progress {
                 spp: film.spp(),
@@ -132,7 +132,7 @@ impl WithPath for Passes<'_> {
     }
 }
 
-impl Exposure<'_> {
+impl Frame<'_> {
     /// One pass of `spp` samples in every pixel. Every pixel's random numbers and sums
     /// are its own, so threads and their order change nothing. When the deadline passes,
     /// the squares not yet begun keep what they have.

@@ -1,8 +1,9 @@
 //! BMP: palettes of 1, 2, 4 and 8 bits, run lengths, bottom-up or top-down; true colours
 //! by the `image` crate.
 //!
-//! The `image` crate's own decoder turns palettes into colours; indices and resolution are
-//! read here. Layout after the Windows GDI documentation (BITMAPFILEHEADER,
+//! The `image` crate's own decoder turns palettes into colours, and asked for indices it
+//! panics where they are packed (0.25.10: one and four bits, run lengths); indices and
+//! resolution are read here. Layout after the Windows GDI documentation (BITMAPFILEHEADER,
 //! BITMAPINFOHEADER, BITMAPCOREHEADER, run-length encoding).
 
 use std::io::Cursor;

@@ -73,14 +73,11 @@ mod tests {
             set("rank", "exact").unwrap().cloth.synthesis.rank,
             Rank::Exact
         );
-        assert_eq!(set("order", "7").unwrap().tracing.max_order, 7);
+        assert_eq!(set("order", "7").unwrap().render.max_order, 7);
         assert!(set("png-bits", "16").unwrap().showing.png_depth == Depth::Sixteen);
         let never = set("roulette-order", "never").unwrap();
-        assert_eq!(never.tracing.roulette_order, u32::MAX);
-        assert_eq!(
-            set("backing-layers", "3").unwrap().tracing.backing_layers,
-            3
-        );
+        assert_eq!(never.render.roulette_order, u32::MAX);
+        assert_eq!(set("backing-layers", "3").unwrap().render.backing_layers, 3);
     }
 
     #[test]
@@ -128,7 +125,7 @@ mod tests {
         settings.cloth.level = 99;
         assert!(check(&settings).unwrap_err().to_string().contains("level"));
         let mut settings = Settings::default();
-        settings.tracing.shadow_roulette = f32::NAN;
+        settings.render.shadow_roulette = f32::NAN;
         assert!(check(&settings).is_err());
     }
 }

@@ -11,9 +11,9 @@ pub(super) static ORDER: Dial = Dial {
     invalidates: Invalidates::Picture,
     effect: Some(Effect::Multiple),
     of_voxels: true,
-    get: |settings| settings.tracing.max_order.to_string(),
+    get: |settings| settings.render.max_order.to_string(),
     set: |settings, text| {
-        settings.tracing.max_order = number(text, 1..=4096)?;
+        settings.render.max_order = number(text, 1..=4096)?;
         Some(())
     },
 };
@@ -26,12 +26,12 @@ pub(super) static ROULETTE_ORDER: Dial = Dial {
     invalidates: Invalidates::Picture,
     effect: Some(Effect::Multiple),
     of_voxels: true,
-    get: |settings| match settings.tracing.roulette_order {
+    get: |settings| match settings.render.roulette_order {
         u32::MAX => "never".to_owned(),
         order => order.to_string(),
     },
     set: |settings, text| {
-        settings.tracing.roulette_order = match text {
+        settings.render.roulette_order = match text {
             "never" => u32::MAX,
             _ => number(text, 1..=4096)?,
         };
@@ -47,11 +47,11 @@ pub(super) static SHADOW_ROULETTE: Dial = Dial {
     invalidates: Invalidates::Picture,
     effect: Some(Effect::Shadows),
     of_voxels: true,
-    get: |settings| settings.tracing.shadow_roulette.to_string(),
+    get: |settings| settings.render.shadow_roulette.to_string(),
     set: |settings, text| {
         let share = text.parse().ok()?;
         let taken = (0.0..=1.0).contains(&share);
-        taken.then(|| settings.tracing.shadow_roulette = share)
+        taken.then(|| settings.render.shadow_roulette = share)
     },
 };
 
@@ -63,9 +63,9 @@ pub(super) static PASS_SPP: Dial = Dial {
     invalidates: Invalidates::Picture,
     effect: None,
     of_voxels: true,
-    get: |settings| settings.tracing.pass_spp.to_string(),
+    get: |settings| settings.render.pass_spp.to_string(),
     set: |settings, text| {
-        settings.tracing.pass_spp = number(text, 1..=1024)?;
+        settings.render.pass_spp = number(text, 1..=1024)?;
         Some(())
     },
 };
@@ -78,9 +78,9 @@ pub(super) static BACKING_LAYERS: Dial = Dial {
     invalidates: Invalidates::Picture,
     effect: None,
     of_voxels: false,
-    get: |settings| settings.tracing.backing_layers.to_string(),
+    get: |settings| settings.render.backing_layers.to_string(),
     set: |settings, text| {
-        settings.tracing.backing_layers = number(text, 1..=16)?;
+        settings.render.backing_layers = number(text, 1..=16)?;
         Some(())
     },
 };

@@ -50,7 +50,7 @@ impl Default for PreviewSettings {
     fn default() -> Self {
         let mut settings = Settings::default();
         // Each pass is shown.
-        settings.tracing.pass_spp = 1;
+        settings.render.pass_spp = 1;
         Self {
             store: ExemplarStore::user(),
             effects: EffectChoice::default(),

@@ -34,7 +34,7 @@ fn bench() -> Harness<'static, Bench> {
         |ui, bench: &mut Bench| {
             let preview = bench.preview.get_or_insert_with(|| {
                 let mut settings = Settings::default().at_level(4);
-                settings.tracing.pass_spp = 1;
+                settings.render.pass_spp = 1;
                 let settings = PreviewSettings {
                     store: ExemplarStore::user(),
                     effects: EffectChoice {

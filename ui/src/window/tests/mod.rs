@@ -44,7 +44,7 @@ fn builder() -> HarnessBuilder<App> {
 /// Pictures that are there at once: what they look like is tested elsewhere.
 fn crude() -> PreviewSettings {
     let mut settings = Settings::default().at_level(4);
-    settings.tracing.pass_spp = 1;
+    settings.render.pass_spp = 1;
     PreviewSettings {
         store: ExemplarStore::user(),
         effects: EffectChoice {

@@ -70,7 +70,7 @@ fn mailbox() -> (Arc<Mailbox>, Arc<Mutex<Vec<Picture>>>) {
 
 fn request_of(view: &PreviewView, generation: u64) -> PreviewRequest {
     let mut still = view.still.clone();
-    still.settings.tracing.pass_spp = 1;
+    still.settings.render.pass_spp = 1;
     PreviewRequest {
         generation,
         aim: Aim::Pane,
