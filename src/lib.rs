@@ -25,8 +25,8 @@
 //! block of an exemplar ([`exemplar`], made of the curves of [`yarn`]); [`cloth`] finds the
 //! crossing of a position and reads that block's voxel, moved by edge fixing and by chance;
 //! [`render`] walks rays through any such [`render::Medium`] and scatters them; [`film`] sums
-//! them, denoises, and shows them; an [`engine`] is all of that for one design, and
-//! [`plan`] says which effects and which settings it takes.
+//! them, denoises, and shows them. An [`engine`] makes a picture of one design, by all of that or,
+//! as first sight does, by less; [`plan`] says which effects and which settings it takes.
 //!
 //! A still of a design that comes with the program:
 //!
@@ -47,7 +47,9 @@
 //! Imports go up this table only, and `tests/house.rs` keeps both as they are: an import that
 //! is not in its row fails, and so does a row that allows more than is needed. One that is
 //! needed and points up is written into its row; one that points down asks for the piece that
-//! both need, in a folder above both.
+//! both need, in a folder above both. (Imports from below that have still to go would stand in
+//! italics; there are none.) Tests import what they like. Files that import each other in
+//! circles are counted, and may not become more.
 //!
 //! | folder | what it is | imports |
 //! |---|---|---|

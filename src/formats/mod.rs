@@ -211,7 +211,7 @@ const META_IMAGE_VOLUME: &str =
 
 /// What bytes are that are certainly no design.
 fn other_kind(bytes: &[u8]) -> Option<&'static str> {
-    let kinds: [(&[u8], &str); 10] = [
+    let kinds: [(&[u8], &str); 9] = [
         (b"NRRD000", NRRD_VOLUME),
         (b"ObjectType", META_IMAGE_VOLUME),
         (b"NDims", META_IMAGE_VOLUME),
@@ -225,7 +225,6 @@ fn other_kind(bytes: &[u8]) -> Option<&'static str> {
             b"8BPS",
             "a Photoshop document: save it as a TIFF, PNG or BMP",
         ),
-        (b"@@StartDTX", "a Fiberworks draft"),
         (b"{", "JSON"),
         (b"\x7fELF", "a program"),
     ];

@@ -2,7 +2,7 @@
 //!
 //! A request carries typed [`Settings`], those of the systems, and an [`EffectChoice`]. A
 //! [`Plan`] makes of both what each system takes, and says of every effect whether it is on,
-//! why, and who decided. Names and texts stand in two tables, [`DIALS`] and [`Effect`], which
+//! why, and who decided: the scene, the person, or the engine that has none of it. Names and texts stand in two tables, [`DIALS`] and [`Effect`], which
 //! serve the command line and reports.
 
 mod dial;

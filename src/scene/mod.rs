@@ -2,7 +2,8 @@
 //!
 //! Space is the cloth's, in mm: x along the weft, y along the warp, z out of the face. A
 //! [`View`] of cloth makes a [`Camera`], a camera the [`Ray`]s of its pixels. A [`Pose`] is the
-//! one rule of which side is up and which end is at the right. A [`LightRig`] is a [`Sky`] with
+//! one rule of which side is up and which end is at the right; `View::pose` and
+//! `StillRequest::pose` give it. A [`LightRig`] is a [`Sky`] with
 //! [`Sun`]s, and any [`Environment`] answers what comes from a direction and chooses directions
 //! in proportion.
 

@@ -7,7 +7,7 @@ use anyhow::bail;
 use pickglass::engine::{Renderer, StillRequest};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::{self, Kind, jc5};
-use pickglass::plan::{Effect, Subject};
+use pickglass::plan::{Effect, EffectBase, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
 
@@ -163,6 +163,18 @@ pub fn in_still(
     if let Some((effect, on)) = named.find(|(effect, _)| !renderer.effects.contains(effect)) {
         let sign = if *on { '+' } else { '-' };
         bail!("--effects {sign}{effect}: the renderer {name} leaves no choice of it: leave it out");
+    }
+    let lacking = Effect::ALL
+        .iter()
+        .find(|effect| !renderer.effects.contains(effect));
+    match (args.effects.base, lacking) {
+        (EffectBase::All, Some(effect)) => bail!(
+            "--effects all: the renderer {name} has none of the effect {effect}: leave it out"
+        ),
+        (EffectBase::None, Some(_)) if renderer.effects.is_empty() => {
+            bail!("--effects none: the renderer {name} leaves no choice of any: leave it out")
+        }
+        _ => {}
     }
     let plan = renderer.plan(request, subject)?;
     let mut before: Vec<&str> = Vec::new();

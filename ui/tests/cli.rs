@@ -485,6 +485,8 @@ fn options_that_others_leave_nothing_to_say_are_refused_by_name() {
         (&["--set", "order=3"][..], "--set order"),
         (&["--effects", "+hairs"], "--effects +hairs"),
         (&["--effects", "-sky"], "--effects -sky"),
+        (&["--effects", "all"], "--effects all"),
+        (&["--effects", "none"], "--effects none"),
         (&["--seconds", "1"], "--seconds"),
     ] {
         let said = refused(&pickglass(folder.path(), &[&line[..], more].concat()), 1);

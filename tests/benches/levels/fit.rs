@@ -23,24 +23,14 @@ const RATIOS: [f32; 4] = [1.75, 2.9, 5.2, 8.5];
 /// and spread, with which highlights of a satin in silk are as bright under all lamps.
 /// Coarse cotton is thinned less than that (0.58 would keep what it lets through): more, and
 /// the yarn below is seen at the middle of crossings.
-const DENSITIES: [(Family, [[f32; 2]; 4]); 4] = [
-    (
-        Family::Cotton,
-        [[0.275, 1.0], [0.345, 1.0], [0.44, 1.0], [0.44, 1.0]],
-    ),
-    (
-        Family::Silk,
-        [[0.306, 1.0], [0.37, 1.0], [0.465, 1.43], [0.465, 1.43]],
-    ),
-    (
-        Family::Wool,
-        [[0.275, 1.0], [0.303, 1.0], [0.347, 1.0], [0.367, 1.0]],
-    ),
-    (
-        Family::Linen,
-        [[0.26, 1.0], [0.333, 1.0], [0.408, 1.0], [0.44, 1.0]],
-    ),
-];
+fn densities(family: Family) -> [[f32; 2]; 4] {
+    match family {
+        Family::Cotton => [[0.275, 1.0], [0.345, 1.0], [0.44, 1.0], [0.44, 1.0]],
+        Family::Silk => [[0.306, 1.0], [0.37, 1.0], [0.465, 1.43], [0.465, 1.43]],
+        Family::Wool => [[0.275, 1.0], [0.303, 1.0], [0.347, 1.0], [0.367, 1.0]],
+        Family::Linen => [[0.26, 1.0], [0.333, 1.0], [0.408, 1.0], [0.44, 1.0]],
+    }
+}
 
 /// Paths at a coarse level, where no other number is asked for; level 0, which all levels
 /// are compared with, has twice as many, and silk, whose highlights are narrow, too.
@@ -75,9 +65,8 @@ fn cloth(design: &Design, level: u32) -> ClothVolume {
 
 /// The corrections of a family before their gains are known.
 fn nodes(family: Family) -> Vec<LevelCorrection> {
-    let own = DENSITIES.iter().filter(|(of, _)| *of == family);
-    own.flat_map(|(_, densities)| RATIOS.iter().zip(densities))
-        .map(|(&ratio, &[thin, spread])| LevelCorrection {
+    (RATIOS.into_iter().zip(densities(family)))
+        .map(|(ratio, [thin, spread])| LevelCorrection {
             ratio,
             thin,
             spread,

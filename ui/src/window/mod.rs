@@ -2,10 +2,16 @@
 //!
 //! [`app`] holds the state and the frame; [`layout`] says where the panes lie. A pane
 //! changes nothing itself: it pushes [`action`]s, which [`act`] does after all panes were
-//! shown; [`run_command`] does the commands of menus and keys. [`draft`] is the pane one paints in,
-//! [`preview`] the cloth, whose [`worker`] draws on a thread of its own; the others are in
-//! [`panes`]. [`files`] reads and writes on further threads, so that the window never
-//! waits.
+//! shown; [`run_command`] does the commands of menus and keys.
+//!
+//! | modules | what they are |
+//! |---|---|
+//! | `draft`, `preview`, `cloth`, `worker` | the pane one paints in; the cloth, and the threads that draw it |
+//! | `panes`, `layout`, `dividers` | the other panes, a row each, and where they lie |
+//! | `menu`, `palette`, `tools`, `status`, `toasts`, `focus`, `icons` | round them |
+//! | `start`, `session`, `settings`, `autosave`, `lost`, `leaving` | what is open, remembered and recovered |
+//! | `files`, `import`, `export`, `volume`, `dialog`, `task` | files, on further threads, so that the window never waits |
+//! | `forms`, `asking`, `typing`, `image_form`, `settings_form` | what asks |
 
 mod act;
 mod action;

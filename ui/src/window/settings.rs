@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 
 use pickglass::atomic;
-use serde::{Deserialize, Serialize};
+use ron::value::RawValue;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::layout::KeptLayout;
 use super::worker::Quality;
@@ -23,6 +24,7 @@ const LARGEST: u64 = 1 << 20;
 pub struct Settings {
     /// Light instead of dark.
     pub light: bool,
+    #[serde(deserialize_with = "layout_if_known")]
     pub layout: Option<KeptLayout>,
     /// Newest first.
     pub recent: Vec<PathBuf>,
@@ -37,6 +39,12 @@ pub struct Settings {
     pub mm_per_point: Option<f32>,
     /// Newest first.
     pub references: Vec<KeptReference>,
+}
+
+/// A layout of panes that there are; one that names others is none, and all else stays.
+fn layout_if_known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<KeptLayout>, D::Error> {
+    let text = Box::<RawValue>::deserialize(from)?;
+    Ok(text.into_rust().unwrap_or_default())
 }
 
 /// By which picture a design is drawn: only its path is kept, beside that of the design.
@@ -190,6 +198,13 @@ mod tests {
             read.recent[..2],
             [PathBuf::from("/7.ron"), PathBuf::from("/11.ron")]
         );
+
+        // A layout with a pane that this program has not.
+        let text = std::fs::read_to_string(&path).expect("read");
+        std::fs::write(&path, text.replace("Pane(Log)", "Pane(Orchestra)")).expect("written");
+        let (other, wrong) = file.read();
+        assert!(read.layout.is_some() && other.layout.is_none() && wrong.is_none());
+        assert!(other.light && other.recent == read.recent);
 
         std::fs::write(&path, "(light: maybe, recent: [").expect("written");
         let (read, wrong) = file.read();
