@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{IVec3, Vec2, Vec3};
 
 use super::build::ClothVolume;
 use super::hair_cells::{HairCell, HairCells};
@@ -14,6 +14,7 @@ use crate::exemplar::hairs::{HAIRLESS, HairPatch, root_step};
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{MajorantWalk, Medium, SYSTEM, Stretch, Voxel};
 use crate::scene::{Bounds, Ray};
+use crate::volume::cells::CellRay;
 use crate::yarn::{WeaveGeometry, YarnRecipe};
 
 /// Most cells that one walk visits.
@@ -161,13 +162,11 @@ pub struct HairWalk<'l> {
     spans: [(usize, f32, f32); 2],
     span: usize,
     t: f32,
-    cell: [i32; 3],
+    cell: IVec3,
     /// The cell of the stretch last given.
-    here: [i32; 3],
-    /// The ray in cells of the present layer.
-    origin: Vec3,
-    direction: Vec3,
-    ready: bool,
+    here: IVec3,
+    /// The ray in cells of the present layer, once it is entered.
+    cells: Option<CellRay>,
     left: u32,
 }
 
@@ -230,11 +229,9 @@ impl Medium for HairLayer<'_> {
             spans,
             span: 0,
             t: 0.0,
-            cell: [0; 3],
-            here: [0; 3],
-            origin: Vec3::ZERO,
-            direction: Vec3::ZERO,
-            ready: false,
+            cell: IVec3::ZERO,
+            here: IVec3::ZERO,
+            cells: None,
             left: MAX_CELLS,
         }
     }
@@ -245,45 +242,32 @@ impl Medium for HairLayer<'_> {
 }
 
 impl HairWalk<'_> {
-    fn set_up(&mut self) {
+    /// Enters the present layer.
+    fn set_up(&mut self) -> CellRay {
         let (face, start, _) = self.spans[self.span];
         let (corner, scale) = self.layer.frame(face);
-        self.origin = (self.ray.origin - corner) * scale;
-        self.direction = self.ray.direction * scale;
+        let cells = CellRay::new(&self.ray, corner, scale);
         self.t = start;
-        let entry = self.origin + self.direction * start;
-        self.cell = entry.to_array().map(cell_of);
-        self.ready = true;
+        let entry = cells.at(start);
+        self.cell = IVec3::from_array(entry.to_array().map(cell_of));
+        self.cells = Some(cells);
+        cells
     }
 
-    /// Goes on to where the ray leaves the cube of cells that reaches `half` − 1 cells
-    /// beyond the present one; gives the distance.
+    /// Goes on to where the ray leaves the cube of cells that reaches `reach` cells beyond the
+    /// present one; gives the distance.
     #[inline]
-    fn leave_cube(&mut self, half: i32) -> f32 {
-        let mut nearest = (0, f32::INFINITY);
-        for axis in 0..3 {
-            let direction = self.direction[axis];
-            if direction.abs() > 1e-12 {
-                let side = if direction > 0.0 { half } else { 1 - half };
-                let plane = self.cell[axis].saturating_add(side) as f32;
-                let distance = (plane - self.origin[axis]) / direction;
-                if distance < nearest.1 {
-                    nearest = (axis, distance);
-                }
-            }
-        }
-        let (out, distance) = nearest;
-        let exit = self.origin + self.direction * distance.max(self.t);
+    fn leave_cube(&mut self, cells: &CellRay, reach: i32) -> f32 {
+        let (distance, out) = cells.exit_cube(self.cell, reach);
+        let exit = cells.at(distance.max(self.t));
         for axis in 0..3 {
             let cell = self.cell[axis];
-            self.cell[axis] = if axis != out {
-                // Rounding may not carry the ray out of the cube by another side.
-                let (low, high) = (cell.saturating_sub(half - 1), cell.saturating_add(half - 1));
-                cell_of(exit[axis]).clamp(low, high)
-            } else if self.direction[axis] > 0.0 {
-                cell.saturating_add(half)
+            self.cell[axis] = if axis == out {
+                cell.saturating_add(cells.step(axis) * (reach + 1))
             } else {
-                cell.saturating_sub(half)
+                // Rounding may not carry the ray out of the cube by another side.
+                let (low, high) = (cell.saturating_sub(reach), cell.saturating_add(reach));
+                cell_of(exit[axis]).clamp(low, high)
             };
         }
         distance
@@ -294,24 +278,26 @@ impl MajorantWalk for HairWalk<'_> {
     fn next_stretch(&mut self) -> Option<Stretch> {
         while self.span < 2 && self.left > 0 {
             let (face, start, end) = self.spans[self.span];
-            if !self.ready {
-                if !(start < end) {
+            let cells = match self.cells {
+                Some(cells) => cells,
+                None if start < end => self.set_up(),
+                None => {
                     self.span += 1;
                     continue;
                 }
-                self.set_up();
-            }
+            };
             self.left -= 1;
             if !(self.t < end) {
                 // Stay on this span: its last stretch may still be asked for voxels.
                 self.span += 1;
-                self.ready = false;
+                self.cells = None;
                 continue;
             }
-            let HairCell { fill, reach } = self.layer.cells[face].at(self.cell);
+            let HairCell { fill, reach } = self.layer.cells[face].at(self.cell.to_array());
             self.here = self.cell;
             let from = self.t;
-            self.t = self.leave_cube(i32::from(reach).max(1)).min(end).max(from);
+            let reach = i32::from(reach).max(1) - 1;
+            self.t = self.leave_cube(&cells, reach).min(end).max(from);
             if fill > 0 && self.t > from {
                 let [warp, weft] = self.layer.full;
                 let majorant = f32::from(fill) * (1.0 / 255.0) * warp.max(weft);
@@ -339,7 +325,7 @@ impl MajorantWalk for HairWalk<'_> {
             let [low, high] = [low, high].map(|cell| (cell * CELL as i32) as f32);
             place.clamp(low, high - 1e-2)
         };
-        let [x, y, z] = self.here;
+        let [x, y, z] = self.here.to_array();
         let place = Vec3::new(
             within(place.x, x, x + 1),
             within(place.y, y, y + 1),

@@ -1,7 +1,7 @@
 //! A ray's walk through the cloth: crossing by crossing, and inside each through its
 //! block's majorant cells by a 3-D digital differential analyser.
 
-use glam::Vec3;
+use glam::{IVec3, Vec3};
 
 use super::build::ClothVolume;
 use super::levels::series;
@@ -9,6 +9,7 @@ use super::lookup::Crossing;
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{Arrival, MajorantWalk, Medium, PLACE, Stretch, Voxel};
 use crate::scene::{Bounds, Ray};
+use crate::volume::cells::{CellRay, first};
 
 /// Half the side of the largest cloth, mm: rays leave it at last.
 pub const REACH_MM: f32 = 4000.0;
@@ -37,13 +38,13 @@ struct Cells {
     t_out: f32,
     /// Whether it leaves through a side in x (else in y).
     out_x: bool,
-    cell: [i32; 3],
-    step: [i32; 3],
-    /// Where the ray crosses the next plane on each axis.
-    next: [f32; 3],
-    /// Distance between planes.
-    delta: [f32; 3],
+    /// The ray in the block's cells.
+    ray: CellRay,
+    /// Whether there are cells to walk through.
     active: bool,
+    cell: [i32; 3],
+    /// Where the ray leaves that cell on each axis.
+    next: [f32; 3],
 }
 
 impl Medium for ClothVolume {
@@ -157,25 +158,12 @@ impl ClothWalk<'_> {
             crossing.corner[1],
             self.cloth.floor_mm(),
         );
-        let origin = (self.ray.origin - corner) * per_mm;
-        let direction = self.ray.direction * per_mm;
-        let entry = origin + direction * self.t;
-        for axis in 0..3 {
-            let (o, d) = (origin[axis], direction[axis]);
-            let cell = cell_of(entry[axis]).clamp(0, count[axis] as i32 - 1);
-            self.cells.cell[axis] = cell;
-            if d.abs() > 1e-12 {
-                let up = d > 0.0;
-                self.cells.step[axis] = if up { 1 } else { -1 };
-                self.cells.next[axis] = ((cell + i32::from(up)) as f32 - o) / d;
-                self.cells.delta[axis] = (1.0 / d).abs();
-            } else {
-                self.cells.step[axis] = 0;
-                self.cells.next[axis] = f32::INFINITY;
-                self.cells.delta[axis] = f32::INFINITY;
-            }
-        }
-        self.cells.active = true;
+        let ray = CellRay::new(&self.ray, corner, per_mm);
+        let entry = ray.at(self.t);
+        let last = IVec3::from_array(count.map(|count| count as i32 - 1));
+        let cell = IVec3::from_array(entry.to_array().map(cell_of)).clamp(IVec3::ZERO, last);
+        (self.cells.cell, self.cells.next) = (cell.to_array(), ray.leaves_all(cell));
+        (self.cells.ray, self.cells.active) = (ray, true);
     }
 }
 
@@ -213,24 +201,18 @@ impl MajorantWalk for ClothWalk<'_> {
                 let [x, y, z] = cells.cell;
                 let index = (y as usize * columns + x as usize) * layers + z as usize;
                 let fill = fills.get(index).copied().unwrap_or(0);
-                let axis = if cells.next[0] < cells.next[1] {
-                    if cells.next[0] < cells.next[2] { 0 } else { 2 }
-                } else if cells.next[1] < cells.next[2] {
-                    1
-                } else {
-                    2
-                };
+                let axis = first(cells.next);
                 let (start, until) = (self.t, cells.next[axis].min(cells.t_out).max(self.t));
                 self.t = until;
                 let counts = self.cloth.majorants.cells();
-                let next = cells.cell[axis] + cells.step[axis];
+                let next = cells.cell[axis] + cells.ray.step(axis);
                 if !(cells.next[axis] < cells.t_out) || next < 0 || next >= counts[axis] as i32 {
                     // The last stretch of a crossing runs to its border.
                     self.t = cells.t_out;
                     cells.active = false;
                 } else {
                     cells.cell[axis] = next;
-                    cells.next[axis] += cells.delta[axis];
+                    cells.next[axis] = cells.ray.leaves(axis, next);
                 }
                 let until = self.t;
                 if fill > 0 && until > start {

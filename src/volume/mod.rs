@@ -7,6 +7,7 @@
 //! largest, two components of the direction, optics), so that a short flight touches half
 //! a kilobyte; bricks without matter are not stored.
 
+pub mod cells;
 pub mod source;
 mod walk;
 

@@ -2,25 +2,17 @@
 
 use glam::{IVec3, Vec3};
 
+use super::cells::CellRay;
 use super::{BLOCK, BRICK, BRICK_VOXELS, DenseGrid, NOT_STORED, Taps, index, inside};
 use crate::render::{MajorantWalk, Stretch, Voxel};
 use crate::scene::Ray;
 
-/// A walk through the bricks of a [`DenseGrid`]: a 3-D DDA (Amanatides and Woo 1987)
-/// whose exit distances are computed from whole brick numbers at every step, so that
-/// errors do not add up, and whose bricks only ever advance, so that it ends.
+/// A walk through the bricks of a [`DenseGrid`], which only ever advance, so that it ends.
 #[derive(Debug)]
 pub struct GridWalk<'g> {
     grid: &'g DenseGrid,
-    /// Origin and direction in voxels.
-    origin: Vec3,
-    direction: Vec3,
-    /// Distance at which the ray crosses the plane `x = k` is `k·inverse + bias`; +∞ on
-    /// axes along which it does not move.
-    inverse: Vec3,
-    bias: Vec3,
-    /// 1 where the ray ascends (the far side of a cell), else 0.
-    far: IVec3,
+    /// The ray in voxels.
+    ray: CellRay,
     /// The brick to be visited next.
     next: IVec3,
     /// The first and last voxel of the current stretch, where the voxels of its brick are
@@ -41,35 +33,17 @@ pub struct GridWalk<'g> {
 impl<'g> GridWalk<'g> {
     #[inline]
     pub(super) fn new(grid: &'g DenseGrid, ray: &Ray, t_max: f32) -> Self {
-        let origin = (ray.origin - grid.bounds.min) * grid.scale;
-        let direction = ray.direction * grid.scale;
-        let moves = direction.abs().cmpgt(Vec3::splat(1e-12));
-        let inverse = Vec3::select(moves, direction.recip(), Vec3::ZERO);
-        let bias = Vec3::select(moves, -origin * inverse, Vec3::INFINITY);
-        let up = direction.cmpgt(Vec3::ZERO);
-        let far = IVec3::select(up, IVec3::ONE, IVec3::ZERO);
-        let top = grid.size.as_vec3();
-
-        // Clip to the box; an axis along which the ray stands still is in or out.
-        let still_outside = !moves & (origin.cmplt(Vec3::ZERO) | origin.cmpge(top));
-        let near_plane = Vec3::select(up, Vec3::ZERO, top);
-        let far_plane = Vec3::select(up, top, Vec3::ZERO);
-        let enter = Vec3::select(moves, near_plane * inverse + bias, Vec3::NEG_INFINITY);
-        let leave = far_plane * inverse + bias;
-        let start = enter.max_element().max(0.0);
-        let end = leave.min_element().min(t_max);
-        let inside = !still_outside.any() && start < end;
-        let entry = origin + direction * if inside { start } else { 0.0 };
+        let ray = CellRay::new(ray, grid.bounds.min, grid.scale);
+        let (enter, leave) = ray.clip(grid.size.as_vec3());
+        let (start, end) = (enter.max(0.0), leave.min(t_max));
+        let inside = start < end;
+        let entry = ray.at(if inside { start } else { 0.0 });
         let cell = IVec3::new(floor(entry.x), floor(entry.y), floor(entry.z));
         let cell = cell.clamp(IVec3::ZERO, grid.size - 1);
         let brick = cell >> 2;
         Self {
             grid,
-            origin,
-            direction,
-            inverse,
-            bias,
-            far,
+            ray,
             next: brick,
             low: IVec3::ZERO,
             high: IVec3::ZERO,
@@ -83,43 +57,9 @@ impl<'g> GridWalk<'g> {
         }
     }
 
-    /// Where the ray leaves a cell of `edge` voxels, and through which axis.
-    #[inline]
-    fn exit(&self, cell: IVec3, edge: i32) -> (f32, usize) {
-        let planes = ((cell + self.far) * edge).as_vec3() * self.inverse + self.bias;
-        if planes.x < planes.y {
-            if planes.x < planes.z {
-                (planes.x, 0)
-            } else {
-                (planes.z, 2)
-            }
-        } else if planes.y < planes.z {
-            (planes.y, 1)
-        } else {
-            (planes.z, 2)
-        }
-    }
-
-    /// One step on along an axis.
-    #[inline(always)]
-    fn step(&self, axis: usize) -> IVec3 {
-        let step = |k: usize, far: i32| if k == axis { 2 * far - 1 } else { 0 };
-        IVec3::new(
-            step(0, self.far.x),
-            step(1, self.far.y),
-            step(2, self.far.z),
-        )
-    }
-
-    /// Goes on to the next brick along an axis.
-    #[inline(always)]
-    fn advance(&mut self, axis: usize) {
-        self.next += self.step(axis);
-    }
-
     /// Enters a brick that has majorants by voxel; the ray leaves it at `leave`.
     fn enter(&mut self, brick: IVec3, leave: f32, fine: &'g [f32; BRICK_VOXELS]) {
-        let point = self.origin + self.direction * self.t;
+        let point = self.ray.at(self.t);
         let cell = IVec3::new(floor(point.x), floor(point.y), floor(point.z));
         let low = brick * BRICK;
         self.cell = cell.clamp(low, low + BRICK - 1);
@@ -131,8 +71,8 @@ impl<'g> GridWalk<'g> {
         let brick = self.cell >> 2;
         while self.cell >> 2 == brick && self.t < self.leave.min(self.end) {
             let (cell, start) = (self.cell, self.t);
-            let (exit, axis) = self.exit(cell, 1);
-            self.cell += self.step(axis);
+            let (exit, axis) = self.ray.exit(cell, 1);
+            self.cell += self.ray.stride(axis);
             self.t = exit.max(start).min(self.leave);
             let majorant = fine[inside(cell)];
             if majorant > 0.0 {
@@ -153,13 +93,13 @@ impl<'g> GridWalk<'g> {
     fn behind_block(&self, block: IVec3, axis: usize, t: f32) -> IVec3 {
         let low = block * BLOCK;
         let high = low + BLOCK - 1;
-        let point = self.origin + self.direction * t;
+        let point = self.ray.at(t);
         let guess = (point * (1.0 / BRICK as f32)).floor().as_ivec3();
         let mut brick = guess.clamp(low, high);
         // Rounding must not turn the walk back on the other axes.
-        let up = self.far.cmpeq(IVec3::ONE);
+        let up = self.ray.far().cmpeq(IVec3::ONE);
         brick = IVec3::select(up, brick.max(self.next), brick.min(self.next));
-        brick[axis] = if self.far[axis] == 1 {
+        brick[axis] = if self.ray.step(axis) > 0 {
             high[axis] + 1
         } else {
             low[axis] - 1
@@ -187,9 +127,9 @@ impl MajorantWalk for GridWalk<'_> {
             if majorant > 0.0 {
                 self.place = self.grid.places[number];
                 self.scale = self.grid.scales[number];
-                let (exit, axis) = self.exit(brick, BRICK);
+                let (exit, axis) = self.ray.exit(brick, BRICK);
                 let start = self.t;
-                self.advance(axis);
+                self.next += self.ray.stride(axis);
                 if let Some(fine) = self.grid.fine.get(self.grid.fine_places[number] as usize) {
                     self.enter(brick, exit.max(start), fine);
                     continue;
@@ -206,11 +146,11 @@ impl MajorantWalk for GridWalk<'_> {
             }
             let block = brick >> 2;
             if self.grid.occupied[index(self.grid.blocks, block)] {
-                let (exit, axis) = self.exit(brick, BRICK);
-                self.advance(axis);
+                let (exit, axis) = self.ray.exit(brick, BRICK);
+                self.next += self.ray.stride(axis);
                 self.t = exit.max(self.t);
             } else {
-                let (exit, axis) = self.exit(block, BRICK * BLOCK);
+                let (exit, axis) = self.ray.exit(block, BRICK * BLOCK);
                 self.t = exit.max(self.t);
                 self.next = self.behind_block(block, axis, self.t);
             }
@@ -220,7 +160,7 @@ impl MajorantWalk for GridWalk<'_> {
 
     #[inline(always)]
     fn voxel(&self, t: f32, tap: Vec3, _: f32) -> Voxel {
-        let point = self.origin + self.direction * t;
+        let point = self.ray.at(t);
         let grid = self.grid;
         // Rounding may put the point just outside its stretch, whose majorant holds here.
         let (low, high) = (self.low, self.high);
