@@ -3,9 +3,10 @@
 //! ```text
 //!   formats ──▶ design ◀── edit          what is made: weave, yarns, sett
 //!   posterise ──▶ │
-//!                 ▼
-//!   yarn ─▶ exemplar ─▶ synthesis        voxels to copy from; which block each crossing copies
-//!                 │
+//!          ┌──────┴───────┐
+//!          ▼              ▼
+//!   yarn ─▶ exemplar   synthesis         voxels to copy from; which block each crossing copies
+//!          └──────┬───────┘
 //!                 ▼
 //!               cloth                    the implicit volume: a position becomes a voxel
 //!                 │

@@ -1,11 +1,10 @@
 //! Draws designs: the table of engines, and the pictures that are taken with them.
 //!
-//! A [`StillRequest`] says what is asked for. A [`Renderer`], one row of the table, plans what
-//! it simulates of that, and makes an [`Engine`] for the design, whose [`Engine::expose`] gives
-//! an [`Exposure`] of a [`Shot`]; developed, that is a [`Still`], which is shown and written.
-//! [`render_still`] does all of it, [`render_sheet`] puts all colourways of a design side by
-//! side, [`render_grid`] takes a picture of voxels that were read. The rows stand in `table.rs`:
-//! the path
+//! A [`StillRequest`] says what is asked for. A [`Renderer`], one row of the table (`table.rs`),
+//! plans what it simulates of that, and makes an [`Engine`] for the design, whose
+//! [`Engine::expose`] gives an [`Exposure`] of a [`Shot`]; developed, that is a [`Still`], which
+//! is shown and written. [`render_still`] does all of it, [`render_sheet`] puts all colourways of
+//! a design side by side, [`render_grid`] takes a picture of voxels that were read. The path
 //! tracer of a [`PreparedCloth`](crate::cloth::PreparedCloth) is the reference; [`FirstSight`]
 //! is there at once; [`Standing`] is what a window shows while the one becomes the other.
 

@@ -2,8 +2,9 @@
 //!
 //! A request carries typed [`Settings`], those of the systems, and an [`EffectChoice`]. A
 //! [`Plan`] makes of both what each system takes, and says of every effect whether it is on,
-//! why, and who decided: the scene, the person, or the engine that has none of it. Names and texts stand in two tables, [`DIALS`] and [`Effect`], which
-//! serve the command line and reports.
+//! why, and who decided: the scene or the person ([`Plan::new`]), or the engine that has none of
+//! it ([`Plan::limited_to`]); reports say it too. Names and texts stand in two tables, [`DIALS`]
+//! and [`Effect`], which serve the command line, its help and reports.
 
 mod dial;
 mod dials;

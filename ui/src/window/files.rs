@@ -25,7 +25,7 @@ use crate::tokens::{self, Palette};
 /// A dialog that ends sooner than this without a choice never opened, s.
 const NEVER_OPENED: f64 = 1.5;
 
-/// Endings of pictures.
+/// Endings of pictures that a design is drawn by: those of photographs and of scans.
 const PICTURES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "bmp", "tif", "tiff"];
 /// Whether drafts are exported in a format here: cards want a loom, which nobody is asked for.
 fn is_exported(format: &Format) -> bool {
@@ -84,13 +84,20 @@ impl Purpose {
         }
     }
 
-    fn field(self) -> &'static str {
+    fn field(self) -> String {
+        let image = |format: &Format| matches!(format.kind, Kind::Image | Kind::Picture);
         match self {
-            Self::Open => "Path of a .ron, .wif or image file",
-            Self::Save => "Path of a .ron file",
-            Self::Export => "Path that ends in .wif, .png, .bmp, .tif or .gif",
-            Self::Print => "Path of a .pdf file",
-            Self::Reference => "Path of a photograph or a drawing",
+            Self::Open => {
+                let others = formats::endings_in_words(|format| !image(format), ", ");
+                format!("Path of a {others} or image file")
+            }
+            Self::Save => "Path of a .ron file".to_owned(),
+            Self::Export => {
+                let written = formats::endings_in_words(is_exported, " or ");
+                format!("Path that ends in {written}")
+            }
+            Self::Print => "Path of a .pdf file".to_owned(),
+            Self::Reference => "Path of a photograph or a drawing".to_owned(),
         }
     }
 
