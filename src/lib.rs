@@ -75,9 +75,11 @@
 //! | [`edit`] | changes, undo, recovery | `atomic` `design` `formats` |
 //! | [`mod@print`] | a design as PDF | `text` `design` |
 //! | [`presets`] | designs inside the program | `design` `formats` |
-//! | [`plan`] | what a picture simulates, and how closely | `synthesis` `exemplar` `render` `cloth` `formats` |
+//! | [`plan`] | what a picture simulates, and how closely | `limits` `synthesis` `exemplar` `render` `cloth` `formats` |
 //! | [`engine`] | draws a design: the table of engines, stills, sheets | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
+//! | [`accuracy`] | what each dial's settings cost and how wrong they are, measured | `random` `job` `atomic` `design` `synthesis` `exemplar` `scene` `film` `cloth` `formats` `plan` `engine` |
 
+pub mod accuracy;
 pub mod atomic;
 pub mod cloth;
 pub mod design;

@@ -18,7 +18,12 @@ impl Again {
     pub fn new(request: &StillRequest, report: &StillReport) -> Self {
         Self {
             source: None,
-            options: options(request, report),
+            options: options(
+                request,
+                &report.renderer,
+                // Nothing else is known of how many there are where an engine has no paths.
+                (report.paths_per_second > 0.0).then_some(report.spp),
+            ),
         }
     }
 
@@ -29,15 +34,14 @@ impl Again {
     }
 }
 
-/// The options of `pickglass still` that make the picture of `request` again, with as many
-/// paths a pixel as `report` says it has. Dials stand there where they are not as usual.
-fn options(request: &StillRequest, report: &StillReport) -> String {
+/// The options of `pickglass still` that make the picture of `request` with an engine, with
+/// `spp` paths a pixel where it has paths. Dials stand there where they are not as usual.
+pub fn options(request: &StillRequest, renderer: &str, spp: Option<u32>) -> String {
     let mut words = Vec::new();
     let mut say = |name: &str, value: String| words.push(format!("--{name} {value}"));
     say("size", format!("{}x{}", request.width, request.height));
-    // Nothing else is known of how many there are where an engine has no paths.
-    if report.paths_per_second > 0.0 {
-        say("spp", report.spp.to_string());
+    if let Some(spp) = spp {
+        say("spp", spp.to_string());
     }
     say("view", request.view.to_string());
     if let Some(eye) = request.eye {
@@ -54,7 +58,7 @@ fn options(request: &StillRequest, report: &StillReport) -> String {
         say("exposure", request.exposure_ev.to_string());
     }
     say("backing", request.backing.to_string());
-    say("renderer", report.renderer.clone());
+    say("renderer", renderer.to_owned());
     say("effects", effects(&request.effects));
     if let Some(colourway) = &request.colourway {
         say("colourway", shell_word(colourway).into_owned());
@@ -63,7 +67,8 @@ fn options(request: &StillRequest, report: &StillReport) -> String {
     let usual = Settings::default();
     for dial in DIALS {
         let value = dial.get(&request.settings);
-        if value != dial.get(&usual) {
+        // Paths a pixel are said above.
+        if dial.name != "spp" && value != dial.get(&usual) {
             say("set", format!("{}={value}", dial.name));
         }
     }
@@ -118,14 +123,8 @@ mod tests {
             ..StillRequest::default()
         };
         request.settings.cloth.level = 2;
-        let report = StillReport {
-            renderer: "cpu".to_owned(),
-            spp: 12,
-            paths_per_second: 1.0,
-            ..StillReport::default()
-        };
         assert_eq!(
-            options(&request, &report),
+            options(&request, "cpu", Some(12)),
             "--size 64x48 --spp 12 --view face --eye 270,40 --mm 2.5 --centre -1,0.25 \
              --light 'my light.exr' --backing self --renderer cpu \
              --effects none,+sky,-edge-fixing --colourway 'it'\\''s' --seed 0 --set level=2 \

@@ -26,13 +26,14 @@ mod still;
 mod table;
 mod tracer;
 
+pub use again::options;
 pub use carried::{Carried, Sighted};
 pub use exposure::{Engine, Exposure, Pass};
 pub use first_sight::{FirstSight, SightTables};
 pub use grid::{light_warnings, render_grid, scene_files};
 pub use prepare::{check_view, coloured, covers, follow, prepare, prepare_woven};
 pub use renderer::Renderer;
-pub use request::{Heading, LightChoice, StillReport, StillRequest, Stop, USUAL_SPP};
+pub use request::{Heading, LightChoice, StillReport, StillRequest, Stop};
 pub use sheet::{ALL_COLOURWAYS, AS_DESIGNED, Sheet, SheetPlace, render_sheet};
 pub use shot::{Shot, place_on, usual_width_mm};
 pub use standing::Standing;

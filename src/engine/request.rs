@@ -9,9 +9,6 @@ use crate::plan::{DialError, EffectChoice, Plan, Planned, Settings, Subject};
 use crate::render::Backing;
 use crate::scene::{PRESET_NAMES, Pose, View};
 
-/// Samples a pixel when a request gives no way to stop.
-pub const USUAL_SPP: u32 = 64;
-
 /// What lights the cloth.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LightChoice {
@@ -68,7 +65,8 @@ impl Default for LightChoice {
     }
 }
 
-/// When to stop refining: at the first that is reached.
+/// When to stop refining: at the first that is reached; where none is said, after the paths
+/// of [`crate::render::RenderSettings::spp`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stop {
     /// Samples in every pixel.
@@ -173,7 +171,7 @@ impl StillRequest {
         let mut plan = plan.seeded(self.seed).before(self.backing);
         plan.render.spp = match (self.stop.spp, self.stop.seconds, self.stop.error) {
             (Some(spp), ..) => spp,
-            (None, None, None) => USUAL_SPP,
+            (None, None, None) => plan.render.spp,
             _ => u32::MAX,
         };
         plan.render.error = self.stop.error.unwrap_or(0.0) as f32;

@@ -11,7 +11,7 @@ mod dials;
 mod effect;
 mod settings;
 
-pub use dial::{Dial, DialError, Invalidates};
+pub use dial::{Dial, DialError, Invalidates, Measure};
 pub use dials::{DIALS, check, dial};
 pub use effect::{Decider, Effect, EffectBase, EffectChoice, Planned, Subject, UnknownEffect};
 pub use settings::{Settings, ShowingSettings};

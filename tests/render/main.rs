@@ -1,10 +1,11 @@
-//! The tracer: tracking, fibres, films, denoising, stills and first sight.
+//! The tracer: tracking, fibres, films, denoising, stills, first sight and what accuracy costs.
 
 #[path = "../common/picture_likeness/mod.rs"]
 mod picture_likeness;
 #[path = "../common/render_scenes/mod.rs"]
 mod render_scenes;
 
+mod accuracy;
 mod denoise;
 mod engines;
 mod film;

@@ -6,14 +6,16 @@ use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use pickglass::design::{Family, Srgb};
 use pickglass::exemplar::COARSEST_LEVEL;
-use pickglass::render::Backing;
+use pickglass::render::{Backing, RenderSettings};
 use pickglass::scene::{PRESET_NAMES, View};
 
 use crate::help;
+use crate::opened::DEFAULT_PRESET;
 use crate::values::{self, PicturePath, SettArg, Size, Turned, VolumePath};
 use crate::window::Restarts;
+use pickglass::accuracy::{Axis, Effort};
 use pickglass::cloth::Region;
-use pickglass::engine::{Heading, LightChoice, RENDERERS, USUAL_SPP};
+use pickglass::engine::{Heading, LightChoice, RENDERERS};
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::formats::{self, Format};
 use pickglass::plan::EffectChoice;
@@ -70,6 +72,8 @@ pub enum Command {
     Synthesize(SynthesizeArgs),
     /// Render a picture of the cloth
     Still(Box<StillArgs>),
+    /// Measure what each setting of each dial costs in time and how wrong it is
+    Accuracy(Box<AccuracyArgs>),
     /// The weave library: names, repeats and what they are for
     Weaves(WeavesArgs),
     /// Write a window of the cloth as voxels, or its yarns as geometry
@@ -335,28 +339,14 @@ fn renderers() -> String {
     format!("What draws the picture: auto, {}", rows.join(", "))
 }
 
+/// What picture is taken.
 #[derive(Debug, Args)]
-#[command(after_help = help::still())]
-#[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
-pub struct StillArgs {
-    /// A design (.ron), a draft, loom or image file, a preset's name or a volume (.vol, .nrrd,
-    /// .nhdr, .mhd, .mha)
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub design: String,
-    /// The picture to write, .png or .exr
-    #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
-    pub output: PicturePath,
+pub struct PictureArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
     pub size: Size,
-    #[arg(long, value_name = "N", help = format!("Paths per pixel [default: {USUAL_SPP}]"), value_parser = values::spp)]
+    #[arg(long, value_name = "N", help = format!("Paths per pixel [default: {}]", RenderSettings::default().spp), value_parser = values::spp)]
     pub spp: Option<u32>,
-    /// End after this long, with all that it takes
-    #[arg(long, value_name = "S", value_parser = values::positive)]
-    pub seconds: Option<f64>,
-    /// Refine until the relative error is this small, e.g. 0.02 or 2%
-    #[arg(long, value_name = "E", value_parser = values::fraction)]
-    pub error: Option<f64>,
     /// Where the eye is
     #[arg(long, default_value = "face", value_parser = values::named::<View>())]
     pub view: View,
@@ -372,9 +362,6 @@ pub struct StillArgs {
     /// Width of cloth the picture shows, in mm [default: the view's own]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
     pub mm: Option<f64>,
-    /// Edge of a voxel along x, in mm, of a volume whose file does not say it or says it wrong
-    #[arg(long, value_name = "MM", value_parser = values::positive)]
-    pub voxel: Option<f64>,
     /// A light's name, the direction of a sun as 135,40, or an equirectangular environment
     /// (.exr)
     #[arg(long, value_name = "PRESET|DIRECTION|EXR", default_value = PRESET_NAMES[0], value_parser = values::light)]
@@ -390,15 +377,69 @@ pub struct StillArgs {
     /// auto, all or none, then +name and -name, separated by commas
     #[arg(long, value_name = "auto|all|none|±name", default_value = "auto", allow_hyphen_values = true, value_parser = values::effects)]
     pub effects: EffectChoice,
-    /// A colourway of the design, or all of them side by side ("all", .png; --size is each)
-    #[arg(long, value_name = "C")]
-    pub colourway: Option<String>,
     /// Seed of the patch shifts and of the paths
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
     /// Set one dial of one approximation, e.g. rank=15; may be repeated
     #[arg(long = "set", value_name = "dial=value", value_parser = values::dial)]
     pub dials: Vec<Turned>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = help::still())]
+#[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
+pub struct StillArgs {
+    /// A design (.ron), a draft, loom or image file, a preset's name or a volume (.vol, .nrrd,
+    /// .nhdr, .mhd, .mha)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub design: String,
+    /// The picture to write, .png or .exr
+    #[arg(short, long, value_name = "OUT", value_parser = values::picture_path)]
+    pub output: PicturePath,
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// End after this long, with all that it takes
+    #[arg(long, value_name = "S", value_parser = values::positive)]
+    pub seconds: Option<f64>,
+    /// Refine until the relative error is this small, e.g. 0.02 or 2%
+    #[arg(long, value_name = "E", value_parser = values::fraction)]
+    pub error: Option<f64>,
+    /// Edge of a voxel along x, in mm, of a volume whose file does not say it or says it wrong
+    #[arg(long, value_name = "MM", value_parser = values::positive)]
+    pub voxel: Option<f64>,
+    /// A colourway of the design, or all of them side by side ("all", .png; --size is each)
+    #[arg(long, value_name = "C")]
+    pub colourway: Option<String>,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = help::ACCURACY)]
+pub struct AccuracyArgs {
+    /// A design (.ron), a draft, loom or image file, or a preset's name
+    #[arg(value_hint = ValueHint::FilePath, default_value = DEFAULT_PRESET)]
+    pub design: String,
+    /// The folder to write into, and to go on from; made if it is not there
+    #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub output: PathBuf,
+    /// What is measured, by name and separated by commas [default: what matters most to this
+    /// design]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = values::axis)]
+    pub dials: Vec<Axis>,
+    /// How much is measured
+    #[arg(long, default_value_t = Effort::Default, value_parser = values::named::<Effort>())]
+    pub extent: Effort,
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// A colourway of the design
+    #[arg(long, value_name = "C")]
+    pub colourway: Option<String>,
     #[command(flatten)]
     pub sett: SettArgs,
     #[command(flatten)]
@@ -466,9 +507,12 @@ mod tests {
         let Some(Command::Still(still)) = cli.command else {
             panic!("not a still")
         };
-        assert_eq!((still.size.width, still.size.height), (64, 32));
+        assert_eq!(
+            (still.picture.size.width, still.picture.size.height),
+            (64, 32)
+        );
         assert_eq!(still.sett.sett.map(|s| s.picks_per_cm), Some(20.0));
-        assert_eq!(still.dials.len(), 1);
+        assert_eq!(still.picture.dials.len(), 1);
     }
 
     #[test]

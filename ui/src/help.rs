@@ -45,6 +45,17 @@ Says how well the blocks meet; makes no picture.
 With --json: crossings, seconds{…, total}, bytes, consistency{sum, max}, continuity{before,
 after, max}, seam_rms{before, after}.";
 
+/// What `accuracy` writes and how it goes on.
+pub const ACCURACY: &str = "\
+Writes accuracy.md to read, accuracy.json, and of everything that is measured a plot (NAME.png,
+NAME.svg) and the pictures of its settings side by side (NAME-pictures.png). Each setting's time
+is that of the whole picture that the options ask for; its error is measured on a piece of it.
+Where it is interrupted, the same command goes on from what is there.
+
+With --json: dials[]{name, unit, reference, current, knee, settings[]{value, seconds,
+seconds_interval, processor_seconds, error, error_interval, delta_e, ssim, measured}}, design,
+picture, machine{system, threads} …";
+
 /// What a volume is, and what `volume --json` says.
 pub const VOLUME: &str = "\
 The bytes are said before anything is made.

@@ -11,7 +11,7 @@ use pickglass::plan::{Effect, EffectBase, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
 
-use crate::cli::{ConvertArgs, ImageArgs, StillArgs};
+use crate::cli::{ConvertArgs, ImageArgs, PictureArgs, StillArgs};
 use crate::opened::head;
 
 /// What of the image flags is given, by name.
@@ -120,13 +120,13 @@ pub fn of_volume(args: &StillArgs) -> anyhow::Result<()> {
     if args.colourway.is_some() {
         idle.push("--colourway".to_owned());
     }
-    if args.backing == Some(Backing::Itself) {
+    if args.picture.backing == Some(Backing::Itself) {
         idle.push("--backing self".to_owned());
     }
-    let dials = args.dials.iter().map(|turned| turned.dial);
+    let dials = args.picture.dials.iter().map(|turned| turned.dial);
     let idle_dials = dials.filter(|dial| !dial.applies_to(Subject::Voxels));
     idle.extend(idle_dials.map(|dial| format!("--set {}", dial.name)));
-    let effects = args.effects.changes.iter().filter(|(_, on)| *on);
+    let effects = args.picture.effects.changes.iter().filter(|(_, on)| *on);
     let idle_effects = effects.filter(|(effect, _)| !effect.applies_to(Subject::Voxels));
     idle.extend(idle_effects.map(|(effect, _)| format!("--effects +{effect}")));
     match idle.first() {
@@ -148,15 +148,51 @@ pub fn in_still(
     renderer: &Renderer,
     subject: Subject,
 ) -> anyhow::Result<()> {
-    renderer.check(subject)?;
-    let name = renderer.name;
     let stops = [
-        ("--spp", args.spp.is_some()),
+        ("--spp", args.picture.spp.is_some()),
         ("--seconds", args.seconds.is_some()),
         ("--error", args.error.is_some()),
     ];
     let stop = stops.into_iter().find(|(_, given)| *given);
-    if let (false, Some((flag, _))) = (renderer.refines, stop) {
+    let stop = stop.map(|(flag, _)| flag);
+    in_picture(&args.picture, stop, request, renderer, subject)?;
+    let path = &args.output.0;
+    let is_exr = (path.extension()).is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    let turned = |name: &str| turned(&args.picture, name);
+    let showing = [
+        ("--set png-bits", turned("png-bits")),
+        (
+            "--set denoise=on",
+            turned("denoise") && request.settings.showing.denoise,
+        ),
+        ("--exposure", args.picture.exposure.abs() > 0.0),
+    ];
+    let idle = showing.into_iter().find(|(_, given)| is_exr && *given);
+    if let Some((flag, _)) = idle {
+        bail!("{flag}: an .exr holds light as it was traced: leave it out, or write a .png");
+    }
+    Ok(())
+}
+
+fn turned(args: &PictureArgs, name: &str) -> bool {
+    args.dials.iter().any(|turned| turned.dial.name == name)
+}
+
+/// Refuses options of a picture that others of it leave nothing to say; `stop` is the one that
+/// says when it ends.
+///
+/// # Errors
+/// One line that names the first of them and why.
+pub fn in_picture(
+    args: &PictureArgs,
+    stop: Option<&str>,
+    request: &StillRequest,
+    renderer: &Renderer,
+    subject: Subject,
+) -> anyhow::Result<()> {
+    renderer.check(subject)?;
+    let name = renderer.name;
+    if let (false, Some(flag)) = (renderer.refines, stop) {
         bail!("{flag}: the renderer {name} has no paths and ends at once: leave it out");
     }
     let mut named = args.effects.changes.iter();
@@ -190,6 +226,9 @@ pub fn in_still(
                 renderer.name
             );
         }
+        if let Some(why) = (turned.dial.idle)(&request.settings, request.backing) {
+            bail!("--set {name}: {why}");
+        }
         let off = |effect: &Effect| !plan.on(*effect);
         if let Some(effect) = turned.dial.effect.filter(off) {
             bail!("--set {name}: the effect {effect} is left out: leave one of the two out");
@@ -202,29 +241,8 @@ pub fn in_still(
         }
         effects.push(*effect);
     }
-    let turned = |name: &str| before.contains(&name);
-    if turned("backing-layers") && request.backing != Backing::Itself {
-        let backing = request.backing;
-        bail!("--set backing-layers: --backing {backing} has no layers: leave one of the two out");
-    }
-    if turned("level-correction") && request.settings.cloth.level == 0 {
-        bail!(
-            "--set level-correction: level 0 needs none: add --set level=1 to 4, or leave it out"
-        );
-    }
-    let path = &args.output.0;
-    let is_exr = (path.extension()).is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
-    let showing = [
-        ("--set png-bits", turned("png-bits")),
-        (
-            "--set denoise=on",
-            turned("denoise") && request.settings.showing.denoise,
-        ),
-        ("--exposure", args.exposure.abs() > 0.0),
-    ];
-    let idle = showing.into_iter().find(|(_, given)| is_exr && *given);
-    if let Some((flag, _)) = idle {
-        bail!("{flag}: an .exr holds light as it was traced: leave it out, or write a .png");
+    if let (true, Some(flag)) = (before.contains(&"spp"), stop) {
+        bail!("--set spp: {flag} says when the picture ends: leave one of the two out");
     }
     Ok(())
 }

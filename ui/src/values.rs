@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use pickglass::accuracy::Axis;
 use pickglass::cloth::Region;
 use pickglass::formats::volume::VolumeFormat;
 use pickglass::formats::yarns;
@@ -136,6 +137,11 @@ pub fn fraction(text: &str) -> Result<f64, String> {
         .map(|n| n * scale)
         .filter(|n| *n <= 1.0)
         .ok_or_else(|| "expected a share above 0 and at most 1, as 0.02 or 2%".to_owned())
+}
+
+/// What can be measured, by name.
+pub fn axis(text: &str) -> Result<Axis, String> {
+    Axis::named(text.trim()).map_err(|error| error.to_string())
 }
 
 /// A picture's path, `.png` or `.exr`.

@@ -433,6 +433,64 @@ fn wrong_usage_exits_2() {
 }
 
 #[test]
+fn accuracy_is_measured_into_a_folder_and_gone_on_from() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let measured = |dials: &str, more: &[&str]| {
+        let line = ["accuracy", "oxford", "-o", "made/here", "--dials", dials];
+        let small = ["--size", "24x16", "--spp", "2", "--extent", "quick"];
+        pickglass(folder.path(), &[&line[..], &small, more].concat())
+    };
+    let names = |report: &serde_json::Value| -> Vec<String> {
+        let dials = report["dials"].as_array().expect("dials");
+        dials
+            .iter()
+            .map(|dial| dial["name"].as_str().expect("a name").to_owned())
+            .collect()
+    };
+    let first = json(&measured("pass-spp,method", &["--json"]));
+    assert_eq!(names(&first), ["pass-spp", "method"]);
+    has_keys(
+        &first,
+        &[
+            "design",
+            "picture",
+            "machine.threads",
+            "dials.0.unit",
+            "dials.0.reference",
+            "dials.0.current",
+            "dials.0.settings.0.value",
+            "dials.0.settings.0.seconds",
+            "dials.0.settings.0.seconds_interval",
+            "dials.0.settings.0.error",
+            "dials.0.settings.0.error_interval",
+        ],
+    );
+    let at = |name: &str| folder.path().join("made/here").join(name);
+    let written = ["accuracy.json", "accuracy.md", "method.svg", "method.png"];
+    for name in written.iter().chain(&["method-pictures.png"]) {
+        assert!(at(name).is_file(), "{name}");
+    }
+    // What is there is not measured again: its times are the same to the last digit.
+    let more = json(&measured("method,png-bits", &["--json"]));
+    assert_eq!(names(&more), ["pass-spp", "method", "png-bits"]);
+    assert_eq!(more["dials"][0], first["dials"][0]);
+    let lines = measured("method", &[]);
+    let said = String::from_utf8_lossy(&lines.stdout);
+    assert!(
+        said.contains("accuracy.md") && said.contains("method: "),
+        "{said}"
+    );
+    // Another picture begins anew, and says so.
+    let anew = measured("method", &["--mm", "3"]);
+    let warned = String::from_utf8_lossy(&anew.stderr);
+    assert!(warned.contains("replaced"), "{warned}");
+    for (dials, code, said) in [("glow", 2, "glow"), ("backing-layers", 1, "backing-layers")] {
+        let line = refused(&measured(dials, &["--backing", "white"]), code);
+        assert!(line.contains(said), "{line}");
+    }
+}
+
+#[test]
 fn options_that_others_leave_nothing_to_say_are_refused_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let still = |file: &str, more: &[&str]| {

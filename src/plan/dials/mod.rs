@@ -19,6 +19,7 @@ pub static DIALS: &[&Dial] = &[
     &tracing::ORDER,
     &tracing::ROULETTE_ORDER,
     &tracing::SHADOW_ROULETTE,
+    &tracing::SPP,
     &tracing::PASS_SPP,
     &tracing::BACKING_LAYERS,
     &showing::DENOISE,

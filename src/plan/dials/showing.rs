@@ -1,7 +1,7 @@
 //! Dials of showing and writing a traced picture.
 
 use crate::formats::png::Depth;
-use crate::plan::dial::{Dial, Invalidates, switch, switched};
+use crate::plan::dial::{Dial, Invalidates, Measure, always, switch, switched};
 
 pub(super) static DENOISE: Dial = Dial {
     name: "denoise",
@@ -9,8 +9,10 @@ pub(super) static DENOISE: Dial = Dial {
     values: "off or on",
     ladder: &["off", "on"],
     invalidates: Invalidates::Showing,
+    measure: Measure::Shown,
     effect: None,
     of_voxels: true,
+    idle: always,
     get: |settings| switched(settings.showing.denoise),
     set: |settings, text| {
         settings.showing.denoise = switch(text)?;
@@ -24,8 +26,10 @@ pub(super) static PNG_BITS: Dial = Dial {
     values: "8 or 16",
     ladder: &["8", "16"],
     invalidates: Invalidates::Showing,
+    measure: Measure::Rounding,
     effect: None,
     of_voxels: true,
+    idle: always,
     get: |settings| match settings.showing.png_depth {
         Depth::Eight => "8".to_owned(),
         Depth::Sixteen => "16".to_owned(),

@@ -1,6 +1,6 @@
 //! Dials of the synthesis.
 
-use crate::plan::dial::{Dial, Invalidates, number};
+use crate::plan::dial::{Dial, Invalidates, Measure, always, number};
 use crate::plan::effect::Effect;
 use crate::synthesis::Rank;
 
@@ -10,8 +10,10 @@ pub(super) static METHOD: Dial = Dial {
     values: "naive, greedy or dp",
     ladder: &["naive", "greedy", "dp"],
     invalidates: Invalidates::Assignment,
+    measure: Measure::Continuity,
     effect: None,
     of_voxels: false,
+    idle: always,
     get: |settings| settings.cloth.synthesis.method.to_string(),
     set: |settings, text| {
         settings.cloth.synthesis.method = text.parse().ok()?;
@@ -25,8 +27,10 @@ pub(super) static RANK: Dial = Dial {
     values: "0 to 1000, or exact",
     ladder: &["0", "5", "15", "40", "exact"],
     invalidates: Invalidates::Seams,
+    measure: Measure::Seams,
     effect: Some(Effect::EdgeFixing),
     of_voxels: false,
+    idle: always,
     get: |settings| match settings.cloth.synthesis.rank {
         Rank::Off => "0".to_owned(),
         Rank::Truncated(rank) => rank.to_string(),
@@ -48,8 +52,10 @@ pub(super) static PATCH: Dial = Dial {
     values: "0 to 64",
     ladder: &["0", "64", "8", "3", "1"],
     invalidates: Invalidates::Assignment,
+    measure: Measure::Repetition,
     effect: Some(Effect::Randomisation),
     of_voxels: false,
+    idle: always,
     get: |settings| settings.cloth.synthesis.patch.to_string(),
     set: |settings, text| {
         settings.cloth.synthesis.patch = number(text, 0..=64)?;

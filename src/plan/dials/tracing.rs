@@ -1,7 +1,9 @@
 //! Dials of the path tracer.
 
-use crate::plan::dial::{Dial, Invalidates, number};
+use crate::limits;
+use crate::plan::dial::{Dial, Invalidates, Measure, always, number};
 use crate::plan::effect::Effect;
+use crate::render::Backing;
 
 pub(super) static ORDER: Dial = Dial {
     name: "order",
@@ -9,8 +11,10 @@ pub(super) static ORDER: Dial = Dial {
     values: "1 to 4096",
     ladder: &["1", "2", "4", "8", "16", "64", "256", "1024"],
     invalidates: Invalidates::Picture,
+    measure: Measure::Bias,
     effect: Some(Effect::Multiple),
     of_voxels: true,
+    idle: always,
     get: |settings| settings.render.max_order.to_string(),
     set: |settings, text| {
         settings.render.max_order = number(text, 1..=4096)?;
@@ -24,8 +28,10 @@ pub(super) static ROULETTE_ORDER: Dial = Dial {
     values: "1 to 4096, or never",
     ladder: &["1", "2", "4", "8", "16", "never"],
     invalidates: Invalidates::Picture,
+    measure: Measure::Noise,
     effect: Some(Effect::Multiple),
     of_voxels: true,
+    idle: always,
     get: |settings| match settings.render.roulette_order {
         u32::MAX => "never".to_owned(),
         order => order.to_string(),
@@ -45,13 +51,32 @@ pub(super) static SHADOW_ROULETTE: Dial = Dial {
     values: "1 to 0",
     ladder: &["1", "0.3", "0.1", "0.03", "0"],
     invalidates: Invalidates::Picture,
+    measure: Measure::Noise,
     effect: Some(Effect::Shadows),
     of_voxels: true,
+    idle: always,
     get: |settings| settings.render.shadow_roulette.to_string(),
     set: |settings, text| {
         let share = text.parse().ok()?;
         let taken = (0.0..=1.0).contains(&share);
         taken.then(|| settings.render.shadow_roulette = share)
+    },
+};
+
+pub(super) static SPP: Dial = Dial {
+    name: "spp",
+    about: "paths a pixel, where nothing else ends the picture",
+    values: "1 to 1000000",
+    ladder: &["1", "4", "16", "64", "256", "1024", "4096"],
+    invalidates: Invalidates::Picture,
+    measure: Measure::Noise,
+    effect: None,
+    of_voxels: true,
+    idle: always,
+    get: |settings| settings.render.spp.to_string(),
+    set: |settings, text| {
+        settings.render.spp = number(text, limits::STILL_SPP)?;
+        Some(())
     },
 };
 
@@ -61,8 +86,10 @@ pub(super) static PASS_SPP: Dial = Dial {
     values: "1 to 1024",
     ladder: &["1", "4", "16"],
     invalidates: Invalidates::Picture,
+    measure: Measure::Noise,
     effect: None,
     of_voxels: true,
+    idle: always,
     get: |settings| settings.render.pass_spp.to_string(),
     set: |settings, text| {
         settings.render.pass_spp = number(text, 1..=1024)?;
@@ -76,8 +103,13 @@ pub(super) static BACKING_LAYERS: Dial = Dial {
     values: "1 to 16",
     ladder: &["1", "2", "4", "8", "16"],
     invalidates: Invalidates::Picture,
+    measure: Measure::Bias,
     effect: None,
     of_voxels: false,
+    idle: |_, backing| {
+        let why = "only cloth that lies on itself has layers: add --backing self, or leave it out";
+        (backing != Backing::Itself).then_some(why)
+    },
     get: |settings| settings.render.backing_layers.to_string(),
     set: |settings, text| {
         settings.render.backing_layers = number(text, 1..=16)?;

@@ -1,6 +1,7 @@
 //! One file a command. Each turns its arguments into library calls and their results
 //! into lines or one JSON object.
 
+mod accuracy;
 mod check;
 mod convert;
 mod posterize;
@@ -27,6 +28,7 @@ pub fn run(cli: Cli, begun: Instant) -> anyhow::Result<()> {
         Some(Command::Posterize(args)) => posterize::run(&args),
         Some(Command::Synthesize(args)) => synthesize::run(&args),
         Some(Command::Still(args)) => still::run(&args, begun),
+        Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Weaves(args)) => weaves::run(&args),
         Some(Command::Volume(args)) => volume::run(&args),
         Some(Command::Completions(args)) => shell::completions(&args),

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use super::{note_warnings, seconds_json};
-use crate::cli::{StillArgs, source_words};
+use crate::cli::{PictureArgs, StillArgs, source_words};
 use crate::idle;
 use crate::interrupt::Interrupt;
 use crate::late::Late;
@@ -27,7 +27,7 @@ const LONGEST_SECONDS: f64 = 1e9;
 
 /// Makes the picture; the program began at `begun`.
 pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
-    let renderer = engine::renderer(&args.renderer)?;
+    let renderer = engine::renderer(&args.picture.renderer)?;
     let path = &args.output.0;
     let volume = Path::new(&args.design);
     let is_volume = VolumeFormat::opened(volume).is_some();
@@ -36,7 +36,7 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
         false => Vec::new(),
     };
     let mut inputs = Opened::inputs(&args.design, &args.image);
-    inputs.extend(args.light.file());
+    inputs.extend(args.picture.light.file());
     inputs.extend(parts.iter().map(PathBuf::as_path));
     output::check(path, inputs)?;
     if is_volume {
@@ -285,6 +285,18 @@ fn source(args: &StillArgs) -> String {
 
 /// What is asked for, before `backing` where nothing is said of that.
 fn request(args: &StillArgs, backing: Backing) -> anyhow::Result<StillRequest> {
+    let mut request = picture(&args.picture, backing)?;
+    request.stop = Stop {
+        spp: args.picture.spp,
+        seconds: args.seconds,
+        error: args.error,
+    };
+    request.colourway.clone_from(&args.colourway);
+    Ok(request)
+}
+
+/// The picture that is asked for, before `backing` where nothing is said of that.
+pub fn picture(args: &PictureArgs, backing: Backing) -> anyhow::Result<StillRequest> {
     let mut settings = Settings::default();
     for turned in &args.dials {
         turned.dial.turn(&mut settings, &turned.value)?;
@@ -305,9 +317,8 @@ fn request(args: &StillArgs, backing: Backing) -> anyhow::Result<StillRequest> {
         seed: args.seed,
         stop: Stop {
             spp: args.spp,
-            seconds: args.seconds,
-            error: args.error,
+            ..Stop::default()
         },
-        colourway: args.colourway.clone(),
+        colourway: None,
     })
 }

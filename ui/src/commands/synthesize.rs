@@ -1,14 +1,10 @@
 //! `pickglass synthesize`: assignment and edge fixing, measured, with no picture.
 
-use std::sync::Arc;
-use std::time::Instant;
-
-use pickglass::cloth::{ClothSettings, ClothVolume, YarnClasses};
-use pickglass::exemplar::{ExemplarSet, ExemplarStore};
+use pickglass::accuracy::Woven;
+use pickglass::cloth::ClothSettings;
+use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
-use pickglass::synthesis::{
-    Catalogue, EdgeFix, Placement, Quality, Randomisation, Rank, SeamRms, SynthesisSettings,
-};
+use pickglass::synthesis::{Quality, Rank, SeamRms, SynthesisSettings};
 use serde_json::json;
 
 use super::{note_warnings, seconds_json};
@@ -57,58 +53,22 @@ struct Report {
 
 /// Runs the stages one by one, each timed; the exemplars they need are timed apart.
 fn measure(opened: &Opened, synthesis: SynthesisSettings, job: &Job) -> anyhow::Result<Report> {
-    let design = &opened.design;
     let cloth = ClothSettings {
         synthesis,
         ..ClothSettings::default()
     };
-    let catalogue = Catalogue::standard();
-    let begun = Instant::now();
-    let (assignment, needed) = ClothVolume::assign(design, &catalogue, &cloth, job)?;
-    let assigning = begun.elapsed().as_secs_f64();
-
-    let begun = Instant::now();
-    let classes = YarnClasses::new(design);
-    let grid = ClothVolume::grid_for(&catalogue, &classes, &cloth)?;
-    let store = ExemplarStore::user();
-    let sets = (classes.pairs.iter())
-        .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
-        .collect::<Result<Vec<Arc<ExemplarSet>>, _>>()?;
-    let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
-    let exemplar_seconds = begun.elapsed().as_secs_f64();
-
-    let begun = Instant::now();
-    let edge_fix = EdgeFix::new(&heights, &catalogue, synthesis.rank, job)?;
-    let fixing = begun.elapsed().as_secs_f64();
-
-    let randomisation = Randomisation {
-        seed: synthesis.seed,
-        patch: synthesis.patch,
-    };
-    let quality = Quality::measure(
-        &opened.design.weave(),
-        &assignment,
-        &catalogue,
-        randomisation,
-        job,
-    )?;
-    let placement = Placement {
-        catalogue: &catalogue,
-        assignment: &assignment,
-        randomisation,
-    };
-    let set_at = |end, pick| classes.set(design.warp_yarn(end, pick), design.weft_yarn(end, pick));
-    let seams = placement.seam_rms(&edge_fix, &heights, set_at, job)?;
+    let woven = Woven::new(&opened.design, cloth, &ExemplarStore::user(), job)?;
+    let made = woven.synthesise(synthesis, job)?;
     Ok(Report {
-        exemplar_seconds,
+        exemplar_seconds: woven.exemplar_seconds,
         stages: [
-            ("assignment".to_owned(), assigning),
-            ("edge_fixing".to_owned(), fixing),
+            ("assignment".to_owned(), made.assignment.seconds),
+            ("edge_fixing".to_owned(), made.edge_fixing.seconds),
         ],
-        bytes: assignment.bytes() + edge_fix.bytes(),
-        quality,
-        seams,
-        voxel_mm: f64::from(grid.voxel_mm.z),
+        bytes: made.bytes,
+        quality: made.quality,
+        seams: made.seams,
+        voxel_mm: woven.voxel_mm,
     })
 }
 

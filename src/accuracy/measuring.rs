@@ -1,0 +1,789 @@
+//! Measures dials, one after the other: which of them, with how many paths, and in what order
+//! their settings take turns.
+
+use std::sync::Arc;
+
+use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
+
+use super::AccuracyError;
+use super::axis::{Asked, Axis};
+use super::clock::Took;
+use super::curve::{Accuracy, Curve, Machine, Point, Trial};
+use super::difference;
+use super::estimate::Estimate;
+use super::studio::{Exposing, Studio, Take, Takes, piece};
+use super::woven::{Synthesised, Woven};
+use crate::cloth::ClothSettings;
+use crate::design::Design;
+use crate::exemplar::ExemplarStore;
+use crate::film::{Picture, Tone};
+use crate::formats::png::Depth;
+use crate::job::Job;
+use crate::plan::{Measure, Subject};
+use crate::random::Random;
+
+/// How much is measured.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Display,
+    EnumString,
+    EnumMessage,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Effort {
+    /// The four dials that matter most, roughly: half a minute.
+    Quick,
+    /// The eight dials that matter most to this design: at most five minutes.
+    #[default]
+    Default,
+    /// Every dial, closely: half an hour.
+    Full,
+}
+
+impl Effort {
+    /// Seconds of the whole.
+    fn seconds(self) -> f64 {
+        match self {
+            Self::Quick => 25.0,
+            Self::Default => 210.0,
+            Self::Full => 1800.0,
+        }
+    }
+
+    /// Pictures of each setting.
+    fn seeds(self) -> u64 {
+        match self {
+            Self::Quick => 3,
+            Self::Default => 5,
+            Self::Full => 9,
+        }
+    }
+
+    /// Dials that are measured where none is named.
+    fn dials(self) -> usize {
+        match self {
+            Self::Quick => 4,
+            Self::Default => 8,
+            Self::Full => usize::MAX,
+        }
+    }
+}
+
+/// What is to be measured.
+pub struct Measuring {
+    /// The picture, and what draws it.
+    pub asked: Asked,
+    /// How much.
+    pub effort: Effort,
+    /// Which dials; empty = those that matter most to the design.
+    pub axes: Vec<Axis>,
+    /// What was measured before, to go on from where it has the same key.
+    pub before: Option<Accuracy>,
+}
+
+/// What a setting looks like: one piece of the picture for each of a curve's settings.
+pub type Crops = Vec<Picture>;
+
+/// Pictures whose time is not measured: what is made ready at the first.
+const WARM: Exposing = Exposing { seed: 0, spp: 1 };
+/// How each dial is tried to find out whether it matters.
+const TRIED: Runs = Runs { seeds: 2, spp: 1 };
+/// Paths a pixel beyond which more are predicted, in multiples of those of other pictures.
+const LONGER: u32 = 4;
+/// Random settings of several dials that are measured.
+const TRIALS: usize = 10;
+/// Paths a pixel of a picture that is shown, at most, also in multiples of those of other
+/// pictures, and how many are taken.
+const SHOWN_SPP: u32 = 64;
+const SHOWN_LONGER: u32 = 2;
+const SHOWN_SEEDS: u64 = 3;
+/// The first seed of paths that no setting's picture has.
+const OTHER_PATHS: u64 = 1 << 32;
+/// Settings at random that take longer than so many pictures as they are asked for are passed
+/// over.
+const TRIAL_SECONDS: f64 = 3.0;
+
+/// How often, and with how many paths a pixel, each setting's picture is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Runs {
+    seeds: u64,
+    spp: u32,
+}
+
+/// Measures the accuracy of one design on this machine. `on_curve` is told after each dial:
+/// all that was measured so far, and what the settings of the last curve look like.
+///
+/// # Errors
+/// When a dial that is named changes nothing, there is no picture, `on_curve` fails or the job
+/// is cancelled.
+pub fn measure(
+    design: &Arc<Design>,
+    measuring: &Measuring,
+    store: &ExemplarStore,
+    job: &Job,
+    on_curve: &mut dyn FnMut(&Accuracy, &Crops) -> Result<(), AccuracyError>,
+) -> Result<Accuracy, AccuracyError> {
+    let asked = with_paths(&measuring.asked);
+    let idle = measuring.axes.iter().find(|axis| !axis.applies(&asked));
+    if let Some(axis) = idle {
+        return Err(AccuracyError::Idle(axis.name()));
+    }
+    let key = key(design, &asked, measuring.effort);
+    let before = (measuring.before.clone()).filter(|before| before.key == key);
+    let piece = piece(design, &asked.request);
+    let mut accuracy = before.unwrap_or_else(|| Accuracy {
+        key,
+        design: design.name.clone(),
+        picture: options(&asked),
+        machine: machine(),
+        piece: [piece.width, piece.height],
+        piece_mm: piece.width_mm.unwrap_or_default().into(),
+        dials: Vec::new(),
+        trials: Vec::new(),
+    });
+    let begun = std::time::Instant::now();
+    let mut bench = Bench::new(design, asked, store, job)?;
+    let axes = bench.chosen(measuring, job)?;
+    let left: Vec<Axis> = (axes.into_iter())
+        .filter(|axis| !accuracy.dials.iter().any(|curve| curve.name == axis.name()))
+        .collect();
+    let time = measuring.effort.seconds() - begun.elapsed().as_secs_f64();
+    let runs = bench.runs(&left, measuring.effort, time)?;
+    for (number, axis) in left.iter().enumerate() {
+        let share = (number as f32, left.len() as f32);
+        let (curve, crops) = bench.curve(axis, &axis.ladder(), runs, &|stage| {
+            let stage = (share.0 + stage) / share.1;
+            job.report(&format!("measuring {}", axis.name()), stage);
+        })?;
+        accuracy.dials.push(curve);
+        on_curve(&accuracy, &crops)?;
+    }
+    if measuring.effort != Effort::Quick && accuracy.trials.is_empty() {
+        let going = |share| job.report("setting dials together", share);
+        accuracy.trials = bench.trials(&accuracy, runs, &going)?;
+        if !accuracy.trials.is_empty() {
+            on_curve(&accuracy, &Crops::new())?;
+        }
+    }
+    Ok(accuracy)
+}
+
+/// The same picture with as many paths as it is asked for with: no time or error ends it, as
+/// that would depend on what is measured.
+fn with_paths(asked: &Asked) -> Asked {
+    let mut asked = asked.clone();
+    let stop = &mut asked.request.stop;
+    stop.spp = stop.spp.or(Some(asked.request.settings.render.spp));
+    (stop.seconds, stop.error) = (None, None);
+    asked
+}
+
+/// The picture as options of a command line.
+fn options(asked: &Asked) -> String {
+    let spp = asked.request.stop.spp.unwrap_or_default();
+    let still = crate::engine::options(&asked.request, asked.renderer.name, Some(spp));
+    still.trim().to_owned()
+}
+
+/// What measurements have to have in common to stand in one file.
+fn key(design: &Design, asked: &Asked, effort: Effort) -> String {
+    let text = crate::formats::ron::write(design).unwrap_or_default();
+    let said = format!(
+        "{} {} {effort} {:?} {}",
+        env!("CARGO_PKG_VERSION"),
+        options(asked),
+        machine(),
+        text
+    );
+    blake3::hash(said.as_bytes()).to_hex()[..16].to_owned()
+}
+
+/// This machine.
+fn machine() -> Machine {
+    Machine {
+        system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        threads: rayon::current_num_threads(),
+    }
+}
+
+/// Where dials are measured.
+struct Bench<'d> {
+    design: &'d Arc<Design>,
+    asked: Asked,
+    store: &'d ExemplarStore,
+    /// Cancelled with the work, and told nothing.
+    quiet: Job,
+    studio: Studio<'d>,
+    woven: Option<Woven<'d>>,
+    /// What the picture as it is asked for converges to.
+    truth: Option<(Runs, Takes)>,
+    /// Pixels across of the piece.
+    width: usize,
+    /// Pixels of the picture for each of the piece.
+    scale: f64,
+    tone: Tone,
+    pixels_per_mm: f32,
+}
+
+/// Told between pictures how far the curve is.
+type Going<'g> = &'g dyn Fn(f32);
+
+impl<'d> Bench<'d> {
+    fn new(
+        design: &'d Arc<Design>,
+        asked: Asked,
+        store: &'d ExemplarStore,
+        job: &Job,
+    ) -> Result<Self, AccuracyError> {
+        let coloured = crate::engine::coloured(design, &asked.request)?;
+        let piece = piece(&coloured, &asked.request);
+        let pixels = |request: &crate::engine::StillRequest| {
+            f64::from(request.width) * f64::from(request.height)
+        };
+        Ok(Self {
+            quiet: job.clone().with_listener(|_, _| {}),
+            studio: Studio::new(Arc::clone(design), store),
+            woven: None,
+            truth: None,
+            width: piece.width as usize,
+            scale: pixels(&asked.request) / pixels(&piece),
+            tone: Tone {
+                exposure: asked.request.exposure_ev,
+            },
+            pixels_per_mm: piece.width as f32 / piece.width_mm.unwrap_or(1.0),
+            design,
+            asked,
+            store,
+        })
+    }
+
+    fn spp(&self) -> u32 {
+        self.asked.request.stop.spp.unwrap_or(1).max(1)
+    }
+
+    /// The dials to be measured, in the order of their table.
+    fn chosen(&mut self, measuring: &Measuring, job: &Job) -> Result<Vec<Axis>, AccuracyError> {
+        if !measuring.axes.is_empty() {
+            return Ok(measuring.axes.clone());
+        }
+        let all = Axis::all().into_iter();
+        let all: Vec<Axis> = all.filter(|axis| axis.applies(&self.asked)).collect();
+        let most = measuring.effort.dials();
+        if all.len() <= most {
+            return Ok(all);
+        }
+        let asked = self.asked.clone();
+        self.studio.take(&asked, WARM, &self.quiet)?;
+        let whole = self.studio.take(&asked, WARM, &self.quiet)?;
+        let whole = self.point("", &[whole], WARM.spp, Estimate::exact(0.0));
+        let mut matter = Vec::with_capacity(all.len());
+        for (number, axis) in all.iter().enumerate() {
+            job.report("trying the dials", number as f32 / all.len() as f32);
+            let ladder = axis.ladder();
+            let ends = [ladder[0], axis.reference()];
+            let (curve, _) = self.curve(axis, &ends, TRIED, &|_| {})?;
+            matter.push((number, matters(&curve, whole.seconds)));
+        }
+        matter.sort_by(|one, other| other.1.total_cmp(&one.1));
+        let mut kept: Vec<usize> = matter.iter().take(most).map(|(at, _)| *at).collect();
+        kept.sort_unstable();
+        Ok(kept.into_iter().map(|at| all[at]).collect())
+    }
+
+    /// With how many paths each setting's picture is taken so that all takes `time` seconds.
+    fn runs(&mut self, axes: &[Axis], effort: Effort, time: f64) -> Result<Runs, AccuracyError> {
+        let seeds = effort.seeds();
+        let mut seconds = 0.0;
+        for axis in axes {
+            let [crude, reference] = self.ends(axis)?;
+            // Settings between them take as long as the slower one where few do.
+            let each = 0.5 * (crude + reference);
+            let settings = axis.ladder().len() as f64;
+            seconds += each
+                * match axis.measure() {
+                    // One picture of each, to look at.
+                    Measure::Continuity | Measure::Seams | Measure::Repetition => settings,
+                    Measure::Shown | Measure::Engine | Measure::Rounding => {
+                        let taken = seeds.min(SHOWN_SEEDS) as f64 * f64::from(SHOWN_LONGER);
+                        taken * (settings + 1.0)
+                    }
+                    Measure::Bias | Measure::Noise => settings * seeds as f64,
+                };
+        }
+        let spp = time / seconds.max(1e-9);
+        Ok(Runs {
+            seeds,
+            spp: (spp as u32).clamp(1, 4 * self.spp().max(1)),
+        })
+    }
+
+    /// Seconds of a path a pixel at both ends of a dial.
+    fn ends(&mut self, axis: &Axis) -> Result<[f64; 2], AccuracyError> {
+        let mut seconds = [0.0; 2];
+        let ladder = axis.ladder();
+        // The number of paths itself takes what it takes.
+        let ends = match axis.name() {
+            "spp" => [axis.current(&self.asked), axis.current(&self.asked)],
+            _ => [ladder[0].to_owned(), axis.reference().to_owned()],
+        };
+        for (seconds, value) in seconds.iter_mut().zip(&ends) {
+            let asked = axis.set(&self.asked, value)?;
+            self.studio.take(&asked, WARM, &self.quiet)?;
+            *seconds = self.studio.take(&asked, WARM, &self.quiet)?.took.seconds;
+        }
+        self.studio.clear_but(&self.asked);
+        Ok(seconds)
+    }
+
+    /// Measures one dial at the settings of `ladder`.
+    fn curve(
+        &mut self,
+        axis: &Axis,
+        ladder: &[&'static str],
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<(Curve, Crops), AccuracyError> {
+        let measure = axis.measure();
+        let (settings, crops) = match measure {
+            Measure::Continuity | Measure::Seams | Measure::Repetition => {
+                self.of_synthesis(axis, ladder, runs, going)?
+            }
+            Measure::Bias => self.biased(axis, ladder, runs, going)?,
+            Measure::Noise => self.noisy(axis, ladder, runs, going)?,
+            Measure::Shown | Measure::Engine | Measure::Rounding => {
+                self.shown(axis, ladder, runs, going)?
+            }
+        };
+        self.studio.clear_but(&self.asked);
+        let mut curve = Curve {
+            name: axis.name().to_owned(),
+            about: axis.about().to_owned(),
+            measure,
+            unit: measure.unit().to_owned(),
+            reference: axis.reference().to_owned(),
+            current: axis.current(&self.asked),
+            knee: None,
+            settings,
+        };
+        curve.find_knee();
+        Ok((curve, crops))
+    }
+
+    /// Pictures of each setting: seed after seed, all settings in turn.
+    fn take_all(
+        &mut self,
+        settings: &[Asked],
+        runs: Runs,
+        first_seed: u64,
+        going: Going<'_>,
+    ) -> Result<Vec<Takes>, AccuracyError> {
+        for asked in settings {
+            self.studio.take(asked, WARM, &self.quiet)?;
+        }
+        let mut all: Vec<Takes> = settings.iter().map(|_| Takes::default()).collect();
+        let count = (runs.seeds as usize * settings.len()).max(1);
+        let mut done = 0;
+        for seed in 0..runs.seeds {
+            for (asked, takes) in settings.iter().zip(&mut all) {
+                going(done as f32 / count as f32);
+                let exposing = Exposing {
+                    seed: first_seed + seed,
+                    spp: runs.spp,
+                };
+                takes
+                    .0
+                    .push(self.studio.take(asked, exposing, &self.quiet)?);
+                done += 1;
+            }
+        }
+        Ok(all)
+    }
+
+    fn settings(&self, axis: &Axis, ladder: &[&str]) -> Result<Vec<Asked>, AccuracyError> {
+        let set = ladder.iter().map(|value| axis.set(&self.asked, value));
+        set.collect()
+    }
+
+    /// What is wrong whatever the number of paths.
+    fn biased(
+        &mut self,
+        axis: &Axis,
+        ladder: &[&'static str],
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<(Vec<Point>, Crops), AccuracyError> {
+        let settings = self.settings(axis, ladder)?;
+        let all = self.take_all(&settings, runs, 1, going)?;
+        let traced: Vec<Vec<difference::Pixels>> = all.iter().map(Takes::traced).collect();
+        let [.., reference] = &traced[..] else {
+            return Ok((Vec::new(), Vec::new()));
+        };
+        let means: Vec<_> = traced.iter().map(|takes| difference::mean(takes)).collect();
+        let seen: Vec<_> = (all.iter().zip(&means))
+            .map(|(takes, mean)| takes.shown(self.width, mean, self.tone))
+            .collect();
+        let far: Vec<_> = (seen.iter())
+            .map(|shown| shown.at_reading_distance(self.pixels_per_mm))
+            .collect();
+        let mut points = Vec::with_capacity(ladder.len());
+        for (at, value) in ladder.iter().enumerate() {
+            let error = difference::bias(&traced[at], reference, self.width);
+            let mut point = self.point(value, &all[at].0, runs.spp, error);
+            let looks = far[at].difference(&far[far.len() - 1]);
+            (point.delta_e, point.ssim) = (Some(looks.delta_e), Some(looks.ssim));
+            points.push(point);
+        }
+        let crops = seen.iter().map(|shown| shown.picture()).collect();
+        Ok((points, crops))
+    }
+
+    /// Noise alone.
+    fn noisy(
+        &mut self,
+        axis: &Axis,
+        ladder: &[&'static str],
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<(Vec<Point>, Crops), AccuracyError> {
+        if axis.name() == "spp" {
+            return self.paths(ladder, runs, going);
+        }
+        let settings = self.settings(axis, ladder)?;
+        let all = self.take_all(&settings, runs, 1, going)?;
+        let mut points = Vec::with_capacity(ladder.len());
+        // Paths are independent of each other: noise falls with the root of their number.
+        let fewer = (f64::from(runs.spp) / f64::from(self.spp())).sqrt();
+        for (value, takes) in ladder.iter().zip(&all) {
+            let noise = difference::noise(&takes.traced(), self.width).scaled(fewer);
+            points.push(self.point(value, &takes.0, runs.spp, noise));
+        }
+        Ok((points, self.crops(&all)))
+    }
+
+    /// Noise by the number of paths: measured as far as that is quick, then predicted.
+    fn paths(
+        &mut self,
+        ladder: &[&'static str],
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<(Vec<Point>, Crops), AccuracyError> {
+        let asked = self.asked.clone();
+        let (mut points, mut crops): (Vec<Point>, Crops) = (Vec::new(), Vec::new());
+        let mut last: Option<(f64, Point)> = None;
+        for value in ladder {
+            let spp: u32 = value.parse().unwrap_or(1);
+            let known = last.as_ref().filter(|_| spp > LONGER * runs.spp);
+            if let Some((measured, point)) = known {
+                let more = f64::from(spp) / measured;
+                points.push(predicted(value, point, more));
+                continue;
+            }
+            let exposed = Runs { spp, ..runs };
+            let all = self.take_all(std::slice::from_ref(&asked), exposed, 1, going)?;
+            let Some(takes) = all.first() else { continue };
+            let noise = difference::noise(&takes.traced(), self.width);
+            // The time of this many paths, not of those that are asked for.
+            let more = f64::from(spp) / f64::from(self.spp());
+            let mut point = self.point(value, &takes.0, spp, noise);
+            scale_time(&mut point, more);
+            crops.extend(self.crops(&all));
+            last = Some((f64::from(spp), point.clone()));
+            points.push(point);
+        }
+        Ok((points, crops))
+    }
+
+    /// All that is wrong with what is shown, against what the picture as it is asked for
+    /// converges to.
+    fn shown(
+        &mut self,
+        axis: &Axis,
+        ladder: &[&'static str],
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<(Vec<Point>, Crops), AccuracyError> {
+        let settings = self.settings(axis, ladder)?;
+        let exposed = self.exposed(runs);
+        let all = self.take_all(&settings, exposed, 1, going)?;
+        let reference = match self.truth.take() {
+            Some((known, reference)) if known == exposed => reference,
+            _ => {
+                let mut truth = self.asked.clone();
+                truth.renderer = crate::engine::reference();
+                let taken = self.take_all(&[truth], exposed, OTHER_PATHS, going)?;
+                taken.into_iter().next().unwrap_or_default()
+            }
+        };
+        let converging = reference.traced();
+        let far = reference
+            .shown(self.width, &difference::mean(&converging), self.tone)
+            .at_reading_distance(self.pixels_per_mm);
+        let mut points = Vec::with_capacity(ladder.len());
+        let mut crops = Vec::with_capacity(ladder.len());
+        for (value, takes) in ladder.iter().zip(&all) {
+            let clean = takes.clean();
+            let Some(once) = clean.first() else { continue };
+            let seen = takes.shown(self.width, once, self.tone);
+            let error = match axis.measure() {
+                Measure::Rounding => {
+                    let depth = self.depth_of(axis, value)?;
+                    Estimate::exact(rounding(&seen.picture(), depth))
+                }
+                _ => difference::total(&clean, &converging, self.width),
+            };
+            let mut point = self.point(value, &takes.0, exposed.spp, error);
+            if axis.measure() != Measure::Rounding {
+                let looks = (seen.at_reading_distance(self.pixels_per_mm)).difference(&far);
+                (point.delta_e, point.ssim) = (Some(looks.delta_e), Some(looks.ssim));
+            }
+            points.push(point);
+            crops.push(seen.picture());
+        }
+        self.truth = Some((exposed, reference));
+        Ok((points, crops))
+    }
+
+    /// How pictures that are shown are taken: with paths as they are asked for, as far as that
+    /// is quick, as filtering knows no law of their number.
+    fn exposed(&self, runs: Runs) -> Runs {
+        Runs {
+            seeds: runs.seeds.min(SHOWN_SEEDS),
+            spp: self.spp().min(SHOWN_SPP).min(SHOWN_LONGER * runs.spp),
+        }
+    }
+
+    fn depth_of(&self, axis: &Axis, value: &str) -> Result<Depth, AccuracyError> {
+        let asked = axis.set(&self.asked, value)?;
+        Ok(asked.request.settings.showing.png_depth)
+    }
+
+    /// What the synthesis achieves.
+    fn of_synthesis(
+        &mut self,
+        axis: &Axis,
+        ladder: &[&'static str],
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<(Vec<Point>, Crops), AccuracyError> {
+        let settings = self.settings(axis, ladder)?;
+        let job = &self.quiet;
+        let woven = match self.woven.take() {
+            Some(woven) => woven,
+            None => Woven::new(
+                self.design,
+                self.cloth_settings(&self.asked)?,
+                self.store,
+                job,
+            )?,
+        };
+        let mut all: Vec<Vec<Synthesised>> = settings.iter().map(|_| Vec::new()).collect();
+        for seed in 0..runs.seeds {
+            for (asked, made) in settings.iter().zip(&mut all) {
+                going(seed as f32 / (2 * runs.seeds) as f32);
+                let mut synthesis = self.cloth_settings(asked)?.synthesis;
+                synthesis.seed = synthesis.seed.wrapping_add(seed);
+                made.push(woven.synthesise(synthesis, job)?);
+            }
+        }
+        let mut points = Vec::with_capacity(ladder.len());
+        for (value, made) in ladder.iter().zip(&all) {
+            let (times, errors): (Vec<Took>, Vec<f64>) = (made.iter())
+                .map(|made| match axis.measure() {
+                    Measure::Seams => (made.edge_fixing, woven.seams_in_diameters(made)),
+                    Measure::Repetition => (made.assignment, made.repeated),
+                    _ => (made.assignment, discontinuous(made)),
+                })
+                .unzip();
+            let error = Estimate::mean(&errors);
+            let seconds: Vec<f64> = times.iter().map(|took| took.seconds).collect();
+            let mut point = Point::new(value, Estimate::median(&seconds), error);
+            point.processor_seconds = middle(times.iter().map(|took| took.processor_seconds));
+            points.push(point);
+        }
+        self.woven = Some(woven);
+        let looks = Runs { seeds: 1, ..runs };
+        let taken = self.take_all(&settings, looks, 1, &|share| going(0.5 + 0.5 * share))?;
+        Ok((points, self.crops(&taken)))
+    }
+
+    /// Several dials set at random, each such picture measured beside what the curves say of it.
+    fn trials(
+        &mut self,
+        accuracy: &Accuracy,
+        runs: Runs,
+        going: Going<'_>,
+    ) -> Result<Vec<Trial>, AccuracyError> {
+        let tried = |curve: &&Curve| {
+            // The law of the paths is known, and it would only take time.
+            let adds = matches!(curve.measure, Measure::Bias | Measure::Noise);
+            adds && curve.name != "spp"
+        };
+        let curves: Vec<&Curve> = accuracy.dials.iter().filter(tried).collect();
+        if curves.len() < 2 {
+            return Ok(Vec::new());
+        }
+        let asked = self.asked.clone();
+        let set = |settings: &[(String, String)]| {
+            let mut set = settings.iter();
+            set.try_fold(asked.clone(), |asked, (name, value)| {
+                Axis::named(name)?.set(&asked, value)
+            })
+        };
+        // What changes the noise alone changes nothing of what pictures converge to.
+        let best: Vec<(String, String)> = (curves.iter())
+            .filter(|curve| curve.measure == Measure::Bias)
+            .map(|curve| (curve.name.clone(), curve.reference.clone()))
+            .collect();
+        let reference = set(&best)?;
+        let now = accuracy.predict(&[]).map_or(0.0, |now| now.seconds);
+        let at_random = (0..64 * TRIALS as u64).filter_map(|trial| {
+            let settings: Vec<(String, String)> = (curves.iter().enumerate())
+                .map(|(number, curve)| {
+                    let mut random = Random::new(trial, number as u64, 0);
+                    let at = (random.pair()[0] * curve.settings.len() as f32) as usize;
+                    let at = at.min(curve.settings.len() - 1);
+                    (curve.name.clone(), curve.settings[at].value.clone())
+                })
+                .collect();
+            let said = accuracy.predict(&settings)?;
+            (said.seconds <= TRIAL_SECONDS * now).then_some((settings, said))
+        });
+        let all: Vec<_> = at_random.take(TRIALS).collect();
+        let truth = self.take_all(std::slice::from_ref(&reference), runs, 1, &|_| {})?;
+        let truth: Vec<difference::Pixels> = truth.iter().flat_map(Takes::traced).collect();
+        let fewer = (f64::from(runs.spp) / f64::from(self.spp())).sqrt();
+        let mut trials = Vec::with_capacity(TRIALS);
+        for (number, (settings, said)) in all.into_iter().enumerate() {
+            going(number as f32 / TRIALS as f32);
+            let asked = set(&settings)?;
+            let taken = self.take_all(std::slice::from_ref(&asked), runs, 1, &|_| {})?;
+            let Some(takes) = taken.first() else { continue };
+            let traced = takes.traced();
+            let bias = difference::bias(&traced, &truth, self.width).squared();
+            let noise = difference::noise(&traced, self.width)
+                .scaled(fewer)
+                .squared();
+            let point = self.point("", &takes.0, runs.spp, bias.plus(noise).root());
+            self.studio.clear_but(&self.asked);
+            trials.push(Trial {
+                settings,
+                predicted_seconds: said.seconds,
+                seconds: point.seconds,
+                predicted_error: said.error,
+                error: point.error,
+                error_interval: point.error_interval,
+            });
+        }
+        Ok(trials)
+    }
+
+    fn cloth_settings(&self, asked: &Asked) -> Result<ClothSettings, AccuracyError> {
+        Ok(asked.renderer.plan(&asked.request, Subject::Cloth)?.cloth)
+    }
+
+    /// What the first picture of each setting looks like.
+    fn crops(&self, all: &[Takes]) -> Crops {
+        (all.iter())
+            .filter_map(|takes| {
+                let first = takes.0.first()?;
+                let shown = takes.shown(self.width, &first.traced, self.tone);
+                Some(shown.picture())
+            })
+            .collect()
+    }
+
+    /// The point of a setting whose pictures were taken with `spp` paths a pixel: its time is
+    /// that of the whole picture with all its paths.
+    fn point(&self, value: &str, takes: &[Take], spp: u32, error: Estimate) -> Point {
+        let more = f64::from(self.spp()) / f64::from(spp.max(1));
+        let scale = |took: Took, by: f64| Took {
+            seconds: took.seconds * by,
+            processor_seconds: took.processor_seconds.map(|seconds| seconds * by),
+        };
+        let whole = |take: &Take| {
+            let parts = [
+                scale(take.took, more * self.scale),
+                scale(take.developing, self.scale),
+                scale(take.encoding, self.scale),
+            ];
+            let seconds = parts.iter().map(|part| part.seconds).sum::<f64>();
+            let worked: Option<f64> = parts.iter().map(|part| part.processor_seconds).sum();
+            (seconds, worked)
+        };
+        let seconds: Vec<f64> = takes.iter().map(|take| whole(take).0).collect();
+        let mut point = Point::new(value, Estimate::median(&seconds), error);
+        point.processor_seconds = middle(takes.iter().map(|take| whole(take).1));
+        point
+    }
+}
+
+/// Share of the neighbours that do not go on in each other.
+fn discontinuous(made: &Synthesised) -> f64 {
+    let continuity = made.quality.continuity;
+    1.0 - continuity.before as f64 / continuity.max.max(1) as f64
+}
+
+/// The median of what is known.
+fn middle(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let known: Option<Vec<f64>> = values.collect();
+    known.map(|known| Estimate::median(&known).value)
+}
+
+/// Other times of the same point.
+fn scale_time(point: &mut Point, by: f64) {
+    point.seconds *= by;
+    point.seconds_interval = point.seconds_interval.map(|end| end * by);
+    point.processor_seconds = point.processor_seconds.map(|seconds| seconds * by);
+}
+
+/// The point of `more` times as many paths.
+fn predicted(value: &str, point: &Point, more: f64) -> Point {
+    let less = 1.0 / more.sqrt();
+    let mut next = Point {
+        value: value.to_owned(),
+        error: point.error * less,
+        error_interval: point.error_interval.map(|ends| ends.map(|end| end * less)),
+        measured: false,
+        ..point.clone()
+    };
+    scale_time(&mut next, more);
+    next
+}
+
+/// Root mean square of what rounding does to a picture's samples, of white.
+fn rounding(picture: &Picture, depth: Depth) -> f64 {
+    let steps = match depth {
+        Depth::Eight => 255.0f64,
+        Depth::Sixteen => 65535.0,
+    };
+    let samples = picture.pixels.iter().flat_map(|pixel| &pixel[..3]);
+    let (sum, count) = samples.fold((0.0, 0u32), |(sum, count), sample| {
+        let value = f64::from(*sample);
+        let lost = (value * steps).round() / steps - value;
+        (sum + lost * lost, count + 1)
+    });
+    (sum / f64::from(count.max(1))).sqrt()
+}
+
+/// How much a dial does to a picture that takes `whole` seconds: to its time, in powers of e,
+/// and to its error.
+fn matters(curve: &Curve, whole: f64) -> f64 {
+    let (Some(crude), Some(reference)) = (curve.settings.first(), curve.settings.last()) else {
+        return 0.0;
+    };
+    let beside = match curve.measure {
+        // Their time is that of the synthesis.
+        Measure::Continuity | Measure::Seams | Measure::Repetition => whole,
+        _ => 0.0,
+    };
+    let time = ((beside + reference.seconds) / (beside + crude.seconds)).ln();
+    let time = if time.is_finite() { time.abs() } else { 0.0 };
+    time.min(3.0) + (crude.error - reference.error).abs().min(3.0)
+}
