@@ -9,17 +9,17 @@ use crate::scene::Ray;
 /// Directions shorter than this, in cells a mm, stand still along their axis.
 const STILL: f32 = 1e-12;
 
-/// A ray in cells of a grid.
+/// A ray in cells of a grid. What is read axis by axis stands in arrays.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CellRay {
     origin: Vec3,
     direction: Vec3,
     /// Cells per mm turned round along axes on which it moves, else 1.
-    inverse: Vec3,
+    inverse: [f32; 3],
     /// Its origin along axes on which it moves, else −∞: it reaches no plane there.
-    from: Vec3,
+    from: [f32; 3],
     /// 1 where it ascends: the far side of a cell; else 0.
-    far: IVec3,
+    far: [i32; 3],
 }
 
 impl CellRay {
@@ -33,9 +33,9 @@ impl CellRay {
         Self {
             origin,
             direction,
-            inverse: Vec3::select(moves, direction.recip(), Vec3::ONE),
-            from: Vec3::select(moves, origin, Vec3::NEG_INFINITY),
-            far: IVec3::select(direction.cmpgt(Vec3::ZERO), IVec3::ONE, IVec3::ZERO),
+            inverse: Vec3::select(moves, direction.recip(), Vec3::ONE).to_array(),
+            from: Vec3::select(moves, origin, Vec3::NEG_INFINITY).to_array(),
+            far: direction.to_array().map(|along| i32::from(along > 0.0)),
         }
     }
 
@@ -49,15 +49,17 @@ impl CellRay {
     /// is not the smaller one where it misses the box. NaN gives no box.
     #[inline]
     pub fn clip(&self, size: Vec3) -> (f32, f32) {
-        let moves = self.from.cmpgt(Vec3::NEG_INFINITY);
+        let from = Vec3::from_array(self.from);
+        let moves = from.cmpgt(Vec3::NEG_INFINITY);
         // An axis along which it stands still is in or out.
         let inside = self.origin.cmpge(Vec3::ZERO) & self.origin.cmplt(size);
         if !(moves | inside).all() {
             return (f32::INFINITY, f32::NEG_INFINITY);
         }
-        let up = self.far.cmpeq(IVec3::ONE);
-        let near = (Vec3::select(up, Vec3::ZERO, size) - self.from) * self.inverse;
-        let far = (Vec3::select(up, size, Vec3::ZERO) - self.from) * self.inverse;
+        let up = self.far().cmpeq(IVec3::ONE);
+        let inverse = Vec3::from_array(self.inverse);
+        let near = (Vec3::select(up, Vec3::ZERO, size) - from) * inverse;
+        let far = (Vec3::select(up, size, Vec3::ZERO) - from) * inverse;
         let enter = Vec3::select(moves, near, Vec3::NEG_INFINITY);
         (enter.max_element(), far.min_element())
     }
@@ -65,34 +67,39 @@ impl CellRay {
     /// The distance at which it leaves the cells of this number along an axis.
     #[inline(always)]
     pub fn leaves(&self, axis: usize, cell: i32) -> f32 {
-        let (far, from) = (self.far.to_array(), self.from.to_array());
-        ((cell + far[axis]) as f32 - from[axis]) * self.inverse.to_array()[axis]
+        ((cell + self.far[axis]) as f32 - self.from[axis]) * self.inverse[axis]
     }
 
     /// The distances at which it leaves a cell along the three axes.
     #[inline(always)]
     pub fn leaves_all(&self, cell: IVec3) -> [f32; 3] {
-        (((cell + self.far).as_vec3() - self.from) * self.inverse).to_array()
+        self.distances((cell + self.far()).as_vec3()).to_array()
     }
 
     /// Where it leaves a cell that is `edge` cells wide, and through which axis; `cell` counts
     /// such wide ones.
     #[inline(always)]
     pub fn exit(&self, cell: IVec3, edge: i32) -> (f32, usize) {
-        self.first_of(((cell + self.far) * edge).as_vec3())
+        self.first_of(((cell + self.far()) * edge).as_vec3())
     }
 
     /// Where it leaves the cube of cells that reaches `reach` cells beyond this one on every
     /// side, and through which axis.
     #[inline(always)]
     pub fn exit_cube(&self, cell: IVec3, reach: i32) -> (f32, usize) {
-        let way = self.far * 2 - 1;
-        self.first_of((cell + self.far).as_vec3() + (way * reach).as_vec3())
+        let way = self.far() * 2 - 1;
+        self.first_of((cell + self.far()).as_vec3() + (way * reach).as_vec3())
+    }
+
+    /// The distances at which it meets planes, one across each axis.
+    #[inline(always)]
+    fn distances(&self, planes: Vec3) -> Vec3 {
+        (planes - Vec3::from_array(self.from)) * Vec3::from_array(self.inverse)
     }
 
     #[inline(always)]
     fn first_of(&self, planes: Vec3) -> (f32, usize) {
-        let distances = (planes - self.from) * self.inverse;
+        let distances = self.distances(planes);
         if distances.x < distances.y {
             if distances.x < distances.z {
                 (distances.x, 0)
@@ -109,24 +116,21 @@ impl CellRay {
     /// Which way it goes along an axis: +1 or −1.
     #[inline(always)]
     pub fn step(&self, axis: usize) -> i32 {
-        2 * self.far.to_array()[axis] - 1
+        2 * self.far[axis] - 1
     }
 
     /// One step on along an axis.
     #[inline(always)]
     pub fn stride(&self, axis: usize) -> IVec3 {
         let step = |k: usize, far: i32| if k == axis { 2 * far - 1 } else { 0 };
-        IVec3::new(
-            step(0, self.far.x),
-            step(1, self.far.y),
-            step(2, self.far.z),
-        )
+        let [x, y, z] = self.far;
+        IVec3::new(step(0, x), step(1, y), step(2, z))
     }
 
     /// 1 along the axes on which it ascends, else 0.
     #[inline(always)]
     pub fn far(&self) -> IVec3 {
-        self.far
+        IVec3::from_array(self.far)
     }
 }
 
