@@ -1,7 +1,7 @@
 //! Numbers as tables and plots say them.
 
 /// Three digits that mean something.
-pub(super) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     if !value.is_finite() {
         return "unknown".to_owned();
     }

@@ -185,9 +185,13 @@ fn with_paths(asked: &Asked) -> Asked {
     asked
 }
 
-/// The picture as options of a command line.
-fn options(asked: &Asked) -> String {
-    let spp = asked.request.stop.spp.unwrap_or_default();
+/// The picture as options of a command line, as [`Accuracy::picture`] says them.
+pub fn options(asked: &Asked) -> String {
+    let spp = asked
+        .request
+        .stop
+        .spp
+        .unwrap_or(asked.request.settings.render.spp);
     let still = crate::engine::options(&asked.request, asked.renderer.name, Some(spp));
     still.trim().to_owned()
 }

@@ -26,9 +26,10 @@ mod woven;
 
 pub use axis::{Asked, Axis};
 pub use curve::{Accuracy, Curve, Machine, Point, Trial};
+pub use digits::number;
 pub use estimate::Estimate;
 pub use front::Choice;
-pub use measuring::{Effort, Measuring, measure};
+pub use measuring::{Crops, Effort, Measuring, measure, options};
 pub use report::{markdown, read, write};
 pub use seen::EYE_MM;
 pub use woven::{Synthesised, Woven};

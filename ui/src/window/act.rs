@@ -53,6 +53,11 @@ impl App {
                     self.settings.mm_per_point = Some(mm_per_point);
                     self.write_settings();
                 }
+                Action::Set(name, value) => {
+                    if let Err(error) = self.preview.set(&name, &value) {
+                        self.warn(error, "Nothing was set.");
+                    }
+                }
                 Action::Show(pane) => self.layout.bring(pane),
                 Action::Say(grade, text, kept) => self.say(grade, text, kept),
             }

@@ -48,6 +48,8 @@ pub enum Action {
     Limits([u32; 2]),
     /// The screen was found to have so many millimetres a point.
     Calibrated(f32),
+    /// Turn the dial, or switch the effect, of this name, for the cloth that is shown.
+    Set(String, String),
     /// Bring a pane to the front.
     Show(Pane),
     /// Tell the person what happened and what was kept.

@@ -275,6 +275,7 @@ impl App {
                 paused: self.preview.paused,
                 working: self.preview.working(),
                 hidden: self.preview.is_hidden(),
+                measuring: self.panes.is_measuring(),
                 quality: self.preview.quality,
                 export: self.export.progress().or_else(|| self.volume.progress()),
                 files: self.files.at_work(),
@@ -301,6 +302,7 @@ impl App {
         draft.set_hover(self.hover);
         preview.marked = self.hover;
         panes.section.follow(self.hover);
+        panes.look(preview.asked());
         (preview.turned, panes.turned) = (draft.turned(), draft.turned());
         Panel::left("tools")
             .exact_size(tokens::TOOLS_WIDTH)
@@ -384,7 +386,8 @@ impl eframe::App for App {
         let begun = super::tests::Clocks::now();
         self.mind_device();
         let visible = ctx.input(|input| input.viewport().visible());
-        self.preview.set_hidden(visible == Some(false));
+        let waits = visible == Some(false) || self.panes.is_measuring();
+        self.preview.set_hidden(waits);
         if let Some(session) = &self.session {
             self.autosave.keep(ctx, session);
         }

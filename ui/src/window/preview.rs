@@ -4,8 +4,9 @@
 use std::time::Instant;
 
 use egui::{Frame, Id, PointerButton, Rect, RichText, Vec2, pos2, vec2};
+use pickglass::accuracy::{Asked, Axis};
 use pickglass::edit::Document;
-use pickglass::engine::{Heading, LightChoice, StillRequest, usual_width_mm};
+use pickglass::engine::{self, Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::plan::{EffectChoice, Settings};
 use pickglass::render::Backing;
@@ -193,6 +194,21 @@ impl Preview {
             self.quality = quality;
             self.asked = None;
         }
+    }
+
+    /// Turns a dial or switches an effect, by name.
+    ///
+    /// # Errors
+    /// One line that says why not.
+    pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let asked = Asked {
+            request: self.look(),
+            renderer: engine::reference(),
+        };
+        let set = Axis::named(name).and_then(|axis| axis.set(&asked, value));
+        let request = set.map_err(|error| error.to_string())?.request;
+        (self.settings, self.effects) = (request.settings, request.effects);
+        Ok(())
     }
 
     /// Refining waits while nobody sees the window.

@@ -22,6 +22,8 @@ pub struct Status<'s> {
     pub working: Option<f64>,
     /// Refining waits to be seen.
     pub hidden: bool,
+    /// A pane measures how long things take.
+    pub measuring: bool,
     pub quality: Quality,
     pub export: Option<String>,
     /// The file that is being read or written, in words.
@@ -116,6 +118,7 @@ fn quality(shown: &Shown, status: &Status<'_>) -> String {
         (Phase::Done(Done::Good), _) => format!(" · done: {}", status.quality.name()),
         (Phase::Done(Done::Long), _) => format!(" · done: {:.0} minutes", LONGEST / 60.0),
         (Phase::Done(Done::Waiting), _) => " · first sight".to_owned(),
+        _ if status.measuring => " · waits while accuracy is measured".to_owned(),
         _ if status.hidden => " · waits while hidden".to_owned(),
         (_, Fibres::Coarse { light_error }) => {
             let light = light_error.map_or_else(String::new, |error| {

@@ -2,6 +2,7 @@
 //! row of the table here: the layout, the commands that show it, their keys and the settings
 //! come from the row. Draft and cloth are views of their own, which the window holds.
 
+mod accuracy;
 mod colourways;
 mod columns;
 mod dragging;
@@ -24,6 +25,7 @@ use std::path::Path;
 
 use egui::{Key, Ui};
 use pickglass::edit::Document;
+use pickglass::engine::StillRequest;
 use serde::{Deserialize, Serialize};
 
 use super::action::Action;
@@ -124,9 +126,20 @@ panes! {
     section: section::Section, Section, "Cut", [Num6], "Show the section", "How the yarns pass over and under along an end or a pick";
     history: history::History, History, "History", [Num7], "Show history", "All changes by name; a click goes back to one";
     log: log::Log, Log, "Log", [Num8], "Show log", "All that was said, warnings and errors";
+    accuracy: accuracy::AccuracyPane, Accuracy, "Accuracy", [Num9], "Show accuracy", "What each approximation costs in time and how wrong it is, measured";
 }
 
 impl Panes {
+    /// How the cloth is looked at.
+    pub fn look(&mut self, asked: Option<&StillRequest>) {
+        self.accuracy.look(asked);
+    }
+
+    /// Whether a pane measures how long things take.
+    pub fn is_measuring(&self) -> bool {
+        self.accuracy.is_measuring()
+    }
+
     /// Reads a picture to be posterised.
     pub fn read_picture(&mut self, ctx: &egui::Context, path: &Path) {
         self.posterise.read_file(ctx, path);

@@ -1,9 +1,10 @@
 //! Each pane without a display: what it shows and what it asks for, by accessible label.
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pickglass::design::{Lattice, Repeat, Structure};
 use pickglass::edit::{Document, Edit};
+use pickglass::engine::StillRequest;
 use pickglass::presets;
 
 use super::{Pane, Panes};
@@ -79,6 +80,61 @@ fn every_pane_shows_every_preset() {
             harness.run_steps(3);
         }
     }
+}
+
+#[test]
+fn accuracy_is_measured_and_a_setting_is_taken() {
+    let mut harness = bench("default", Pane::Accuracy);
+    harness.run_steps(2);
+    // Nothing is measured before the cloth is looked at.
+    assert!(
+        harness
+            .get_by_label("Measure")
+            .accesskit_node()
+            .is_disabled()
+    );
+    let mut request = StillRequest {
+        width: 24,
+        height: 16,
+        width_mm: Some(2.0),
+        ..StillRequest::default()
+    };
+    request.settings.render.spp = 1;
+    harness.state_mut().panes.look(Some(&request));
+    harness.run_steps(2);
+    harness.get_by_label("quick").click();
+    harness.run_steps(2);
+    harness.get_by_label("Measure").click();
+    harness.run_steps(2);
+    assert!(harness.state().panes.is_measuring());
+    let begun = std::time::Instant::now();
+    while harness.state().panes.is_measuring() {
+        assert!(begun.elapsed().as_secs() < 300, "it is still measured");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    harness.run_steps(2);
+    let dials = harness.query_all_by_label_contains(": ").count();
+    assert!(dials >= 4, "{dials} dials are listed");
+    // Shadows off look quite different: they are among what matters in any cloth.
+    harness.get_by_label("shadows: on").click();
+    harness.run_steps(2);
+    harness.get_by_label_contains("off · ").click();
+    harness.run_steps(2);
+    let asked = &harness.state().asked;
+    let set = |action: &Action| matches!(action, Action::Set(name, value) if name == "shadows" && value == "off");
+    assert!(asked.iter().any(set), "{asked:?}");
+    // Another view is another picture.
+    let another = |harness: &Harness<'_, Bench>| {
+        (harness.query_all_by_label_contains("another view"))
+            .next()
+            .is_some()
+    };
+    assert!(!another(&harness));
+    request.width_mm = Some(3.0);
+    harness.state_mut().panes.look(Some(&request));
+    harness.run_steps(2);
+    assert!(another(&harness));
 }
 
 #[test]
