@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{
-    Button, Color32, ColorImage, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, vec2,
+    Button, ColorImage, Label, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, vec2,
 };
 use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
 use pickglass::accuracy::{
@@ -22,11 +22,16 @@ use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::task::{Outcome, Running};
 
-/// Width of the list of dials, points.
-const LIST: f32 = 34.0 * tokens::GRID;
-/// Height of a plot, and of the picture of a setting, points.
-const PLOT: f32 = 62.0 * tokens::GRID;
+/// Width of the list of dials and of that of settings, points.
+const LIST: f32 = 44.0 * tokens::GRID;
+const SETTINGS: f32 = 84.0 * tokens::GRID;
+/// Width from which they stand beside the plot, points.
+const BESIDE: f32 = 170.0 * tokens::GRID;
+/// Height of a plot above them, and of the picture of a setting, points.
+const PLOT: f32 = 52.0 * tokens::GRID;
 const PICTURE: f32 = 30.0 * tokens::GRID;
+/// Least height of a plot, points.
+const LEAST_PLOT: f32 = 30.0 * tokens::GRID;
 /// How near to a setting the pointer has to be, points.
 const NEAR: f32 = 20.0;
 /// Errors of nothing are drawn at this share of the least that there is.
@@ -73,14 +78,30 @@ impl PaneView for AccuracyPane {
         let known = |name: &String| accuracy.dials.iter().any(|curve| curve.name == *name);
         let dial = self.dial.clone().filter(known);
         let dial = dial.unwrap_or_else(|| accuracy.dials[0].name.clone());
-        ui.horizontal_top(|ui| {
-            ui.allocate_ui(vec2(LIST, ui.available_height()), |ui| {
-                self.list_ui(ui, &accuracy, &dial);
+        let Some(curve) = accuracy.dials.iter().find(|curve| curve.name == dial) else {
+            return;
+        };
+        let room = ui.available_size();
+        if room.x > BESIDE {
+            let settings = SETTINGS.min(0.4 * room.x);
+            let plot = room.x - LIST - settings - 2.0 * ui.spacing().item_spacing.x;
+            ui.horizontal_top(|ui| {
+                column(ui, vec2(LIST, room.y), |ui| {
+                    self.list_ui(ui, &accuracy, &dial);
+                });
+                let pointed = column(ui, vec2(plot, room.y), |ui| self.curve_ui(ui, curve));
+                column(ui, vec2(settings, room.y), |ui| {
+                    self.settings_ui(ui, curve, pointed, actions);
+                });
             });
-            if let Some(curve) = accuracy.dials.iter().find(|curve| curve.name == dial) {
-                ui.vertical(|ui| self.curve_ui(ui, curve, actions));
-            }
-        });
+        } else {
+            ScrollArea::vertical().id_salt("all").show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| self.dials_ui(ui, &accuracy, &dial));
+                let size = vec2(ui.available_width(), PLOT);
+                let pointed = column(ui, size, |ui| self.curve_ui(ui, curve));
+                self.settings_ui(ui, curve, pointed, actions);
+            });
+        }
     }
 
     // Forgets what was measured of the design before.
@@ -103,6 +124,12 @@ impl AccuracyPane {
     /// Whether it measures: all else that works would be measured as well.
     pub fn is_measuring(&self) -> bool {
         self.running.is_some()
+    }
+
+    /// What was measured so far.
+    #[cfg(test)]
+    pub fn measured(&self) -> Option<Accuracy> {
+        self.found().accuracy.clone()
     }
 
     fn found(&self) -> std::sync::MutexGuard<'_, Found> {
@@ -200,15 +227,17 @@ impl AccuracyPane {
         ScrollArea::vertical()
             .id_salt("dials")
             .auto_shrink([false, false])
-            .show(ui, |ui| {
-                for curve in &accuracy.dials {
-                    let text = format!("{}: {}", curve.name, self.set_to(curve));
-                    let entry = ui.selectable_label(curve.name == shown, text);
-                    if entry.on_hover_text(&curve.about).clicked() {
-                        self.dial = Some(curve.name.clone());
-                    }
-                }
-            });
+            .show(ui, |ui| self.dials_ui(ui, accuracy, shown));
+    }
+
+    fn dials_ui(&mut self, ui: &mut Ui, accuracy: &Accuracy, shown: &str) {
+        for curve in &accuracy.dials {
+            let text = format!("{}: {}", curve.name, self.set_to(curve));
+            let entry = ui.selectable_label(curve.name == shown, text);
+            if entry.on_hover_text(&curve.about).clicked() {
+                self.dial = Some(curve.name.clone());
+            }
+        }
     }
 
     /// What a dial is set to now.
@@ -221,13 +250,25 @@ impl AccuracyPane {
         now.unwrap_or_else(|| curve.current.clone())
     }
 
-    /// The curve of one dial, its settings one by one, and what one of them looks like.
-    fn curve_ui(&mut self, ui: &mut Ui, curve: &Curve, actions: &mut Vec<Action>) {
+    /// The curve of one dial; says which setting the pointer is at, and whether it was clicked.
+    fn curve_ui(&mut self, ui: &mut Ui, curve: &Curve) -> Option<(usize, bool)> {
         let quiet = Palette::current(ui).quiet;
+        let what = curve.about.trim_end_matches('.');
+        let about = format!("{what}. Error: {}.", curve.measure.about());
+        ui.add(Label::new(RichText::new(about).color(quiet)).truncate());
+        plot_ui(ui, curve, &self.set_to(curve))
+    }
+
+    /// The settings of a dial one by one, and what one of them looks like; `pointed` is at one
+    /// of them.
+    fn settings_ui(
+        &mut self,
+        ui: &mut Ui,
+        curve: &Curve,
+        pointed: Option<(usize, bool)>,
+        actions: &mut Vec<Action>,
+    ) {
         let now = self.set_to(curve);
-        let about = format!("{}. Error: {}.", curve.about, curve.measure.about());
-        ui.label(RichText::new(about).color(quiet));
-        let pointed = plot_ui(ui, curve, &now);
         let can_set = can_be_set(curve);
         let mut looked_at = pointed.map(|(at, _)| at);
         let mut taken = pointed.and_then(|(at, clicked)| clicked.then_some(at));
@@ -278,10 +319,22 @@ impl AccuracyPane {
         if let Some((_, texture)) = &self.texture {
             let size = texture.size_vec2();
             let shown = egui::Image::new(texture).fit_to_exact_size(size * (PICTURE / size.y));
-            ui.add(shown)
-                .on_hover_text(format!("{}: {}", curve.name, curve.settings[at].value));
+            ui.add(shown).on_hover_text(format!(
+                "What it looks like at {}",
+                curve.settings[at].value
+            ));
         }
     }
+}
+
+/// A column of this size.
+fn column<R>(ui: &mut Ui, size: egui::Vec2, show: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = egui::Layout::top_down(egui::Align::Min);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_size(size);
+        show(ui)
+    })
+    .inner
 }
 
 /// Whether the window can set a dial: how many paths there are, its quality says, and what
@@ -315,15 +368,11 @@ fn row(curve: &Curve, point: &Point) -> String {
 }
 
 fn image(picture: &Picture) -> ColorImage {
-    let bytes = picture.pixels.iter().map(|pixel| {
-        let [r, g, b, a] = pixel.map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8);
-        Color32::from_rgba_unmultiplied(r, g, b, a)
-    });
-    ColorImage {
-        size: [picture.width as usize, picture.height as usize],
-        source_size: vec2(picture.width as f32, picture.height as f32),
-        pixels: bytes.collect(),
-    }
+    let size = [picture.width as usize, picture.height as usize];
+    let bytes: Vec<u8> = (picture.pixels.iter())
+        .flat_map(|pixel| pixel.map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8))
+        .collect();
+    ColorImage::from_rgba_unmultiplied(size, &bytes)
 }
 
 /// Decimal logarithms of time and error of each setting.
@@ -348,7 +397,8 @@ fn plot_ui(ui: &mut Ui, curve: &Curve, now: &str) -> Option<(usize, bool)> {
     let palette = Palette::current(ui);
     let of_power = |mark: GridMark| number(10f64.powf(mark.value));
     let plot = Plot::new(("accuracy", &curve.name))
-        .height(PLOT)
+        .height(ui.available_height().max(LEAST_PLOT))
+        .grid_color(palette.line)
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -397,12 +447,22 @@ fn plot_ui(ui: &mut Ui, curve: &Curve, now: &str) -> Option<(usize, bool)> {
     nearest.map(|(at, _)| (at, shown.response.clicked()))
 }
 
-/// Powers of ten, and twice and five times those between them.
+/// What is marked in a decade, and how far it is to the next mark of its kind.
+const DECADE: [(f64, f64); 6] = [
+    (1.0, 1.0),
+    (2.0, 0.3),
+    (5.0, 0.3),
+    (1.5, 0.1),
+    (3.0, 0.1),
+    (7.0, 0.1),
+];
+
+/// Powers of ten, and what stands between them.
 fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let (first, last) = (low.floor() as i32, high.ceil().min(low + 40.0) as i32);
     let marks = (first..=last).flat_map(|power| {
-        [(1.0f64, 1.0), (2.0, 0.3), (5.0, 0.3)].map(|(times, step_size)| GridMark {
+        DECADE.map(|(times, step_size)| GridMark {
             value: f64::from(power) + times.log10(),
             step_size,
         })
