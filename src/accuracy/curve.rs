@@ -20,6 +20,9 @@ pub struct Accuracy {
     pub piece: [u32; 2],
     /// Width of that piece, mm.
     pub piece_mm: f64,
+    /// What is measured where nothing is named: what mattered most.
+    #[serde(default)]
+    pub chosen: Vec<String>,
     /// A curve of each dial.
     pub dials: Vec<Curve>,
     /// Settings of several dials together: what the curves say of them, and what is so.
@@ -89,9 +92,16 @@ pub struct Point {
     pub error: f64,
     /// Its 95 % confidence interval; `None` where nothing is known of it.
     pub error_interval: Option<[f64; 2]>,
-    /// Mean ΔE₀₀ against the reference, seen from 30 cm, where that was looked at.
+    /// Noise of the traced picture with all its paths, relative to the curve's reference, where
+    /// that was looked at besides.
+    #[serde(default)]
+    pub noise: Option<f64>,
+    /// Paths a pixel of the pictures that the error is of, where it is not of all paths.
+    #[serde(default)]
+    pub paths: Option<u32>,
+    /// Mean ΔE₀₀ from 30 cm: against the reference, or of what is shown against what is traced.
     pub delta_e: Option<f64>,
-    /// Structural similarity to the reference, seen from 30 cm.
+    /// Structural similarity, likewise.
     pub ssim: Option<f64>,
     /// Whether it was measured; else it follows from the setting before by what theory says.
     pub measured: bool,
@@ -106,6 +116,8 @@ impl Point {
             seconds: seconds.value,
             seconds_interval: [seconds.low, seconds.high],
             processor_seconds: None,
+            noise: None,
+            paths: None,
             error: error.value,
             error_interval: interval
                 .iter()

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::estimate::Estimate;
 
-/// Edge of a block, pixels.
+/// Least edge of a block, pixels.
 pub const BLOCK: usize = 8;
 /// What is added to the mean square that errors are relative to: one hundredth of a white
 /// diffuser, squared.
@@ -19,14 +19,24 @@ const DARK: f64 = 1e-4;
 /// Pixels of one picture: premultiplied linear RGB, row by row.
 pub type Pixels = Vec<Vec3>;
 
+/// How a picture is cut into blocks.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame {
+    /// Pixels across.
+    pub width: usize,
+    /// Edge of a block, pixels: wide enough that what is wrong in one says little of the next.
+    pub block: usize,
+}
+
 /// Means over blocks, of a value of each pixel.
-fn blocks(width: usize, count: usize, of: impl Fn(usize) -> f64) -> Vec<f64> {
-    let across = width.div_ceil(BLOCK).max(1);
-    let rows = count / width.max(1);
-    let mut sums = vec![(0.0, 0u32); across * rows.div_ceil(BLOCK).max(1)];
+fn blocks(frame: Frame, count: usize, of: impl Fn(usize) -> f64) -> Vec<f64> {
+    let (width, edge) = (frame.width.max(1), frame.block.max(1));
+    let across = width.div_ceil(edge);
+    let rows = count / width;
+    let mut sums = vec![(0.0, 0u32); across * rows.div_ceil(edge).max(1)];
     for pixel in 0..count {
         let (x, y) = (pixel % width, pixel / width);
-        let (sum, number) = &mut sums[(y / BLOCK) * across + x / BLOCK];
+        let (sum, number) = &mut sums[(y / edge) * across + x / edge];
         *sum += of(pixel);
         *number += 1;
     }
@@ -60,9 +70,9 @@ pub fn power(pictures: &[Pixels]) -> f64 {
 /// Relative root mean square of what is wrong with `pictures` whatever the number of paths,
 /// against those of the same place of `reference`, which were made with the same random
 /// numbers each: what paths have in common cancels.
-pub fn bias(pictures: &[Pixels], reference: &[Pixels], width: usize) -> Estimate {
+pub fn bias(pictures: &[Pixels], reference: &[Pixels], frame: Frame) -> Estimate {
     let count = pictures.first().map_or(0, Vec::len);
-    let squares = blocks(width, count, |pixel| {
+    let squares = blocks(frame, count, |pixel| {
         let differences: Vec<Vec3> = (pictures.iter().zip(reference))
             .map(|(one, other)| one[pixel] - other[pixel])
             .collect();
@@ -72,12 +82,12 @@ pub fn bias(pictures: &[Pixels], reference: &[Pixels], width: usize) -> Estimate
     Estimate::mean(&squares).scaled(1.0 / power).root()
 }
 
-/// Relative root mean square of the noise of one of `pictures`, which differ in their paths
-/// alone.
-pub fn noise(pictures: &[Pixels], width: usize) -> Estimate {
+/// Root mean square of the noise of one of `pictures`, which differ in their paths alone,
+/// relative to pictures of this [`power`].
+pub fn noise(pictures: &[Pixels], power: f64, frame: Frame) -> Estimate {
     let count = pictures.first().map_or(0, Vec::len);
     let taken = pictures.len() as f64;
-    let squares = blocks(width, count, |pixel| {
+    let squares = blocks(frame, count, |pixel| {
         let sum: Vec3 = pictures.iter().map(|one| one[pixel]).sum();
         let mean = sum / taken as f32;
         let spread: f64 = (pictures.iter())
@@ -85,15 +95,14 @@ pub fn noise(pictures: &[Pixels], width: usize) -> Estimate {
             .sum();
         spread / (taken - 1.0)
     });
-    let power = power(pictures);
     Estimate::mean(&squares).scaled(1.0 / power).root()
 }
 
 /// Relative root mean square of all that is wrong with `pictures`, noise and the rest, against
 /// what `reference` converges to: other paths than those of `pictures`, at least two of them.
-pub fn total(pictures: &[Pixels], reference: &[Pixels], width: usize) -> Estimate {
+pub fn total(pictures: &[Pixels], reference: &[Pixels], frame: Frame) -> Estimate {
     let count = pictures.first().map_or(0, Vec::len);
-    let squares = blocks(width, count, |pixel| {
+    let squares = blocks(frame, count, |pixel| {
         let sums: f64 = (pictures.iter())
             .map(|one| {
                 let differences: Vec<Vec3> = (reference.iter())
@@ -124,6 +133,15 @@ mod tests {
 
     const WIDTH: usize = 48;
     const COUNT: usize = WIDTH * 40;
+    const FRAME: Frame = Frame {
+        width: WIDTH,
+        block: BLOCK,
+    };
+
+    /// Relative to itself.
+    fn own_noise(pictures: &[Pixels]) -> Estimate {
+        noise(pictures, power(pictures), FRAME)
+    }
 
     /// A ramp of brightness with `wrong` added and noise of standard deviation `sigma`.
     fn picture(seed: u64, wrong: f32, sigma: f32) -> Pixels {
@@ -157,16 +175,16 @@ mod tests {
         let truth = pictures(100..106, 0.0, 0.3);
         let shifted = pictures(100..106, 0.05, 0.3);
         // Same random numbers: the shift alone is left, exactly.
-        let paired = bias(&shifted, &truth, WIDTH);
+        let paired = bias(&shifted, &truth, FRAME);
         assert!((paired.value - 0.05 / scale()).abs() < 0.002, "{paired:?}");
         // Others: noise is thirty times the squared shift, and it is still found.
-        let unpaired = bias(&pictures(200..206, 0.05, 0.3), &truth, WIDTH);
+        let unpaired = bias(&pictures(200..206, 0.05, 0.3), &truth, FRAME);
         assert!(
             unpaired.low < 0.05 / scale() && unpaired.high > 0.05 / scale(),
             "{unpaired:?}"
         );
         // The control: pictures without a shift have none, though they differ as much.
-        let same = bias(&pictures(200..206, 0.0, 0.3), &truth, WIDTH);
+        let same = bias(&pictures(200..206, 0.0, 0.3), &truth, FRAME);
         assert!(same.low == 0.0 && same.value < 0.03, "{same:?}");
         let plain: f64 = (truth[0].iter().zip(&shifted[1]))
             .map(|(one, other)| product(*one - *other, *one - *other))
@@ -178,17 +196,17 @@ mod tests {
     #[test]
     fn noise_is_what_it_is_and_all_of_it_is_the_hypotenuse() {
         let truth = pictures(0..8, 0.0, 0.1);
-        let found = noise(&truth, WIDTH);
+        let found = own_noise(&truth);
         assert!(
             (found.value * scale() / 0.1 - 1.0).abs() < 0.03,
             "{found:?}"
         );
         assert!(found.low < found.value && found.high > found.value);
-        let all = total(&pictures(20..24, 0.1, 0.1), &truth, WIDTH);
+        let all = total(&pictures(20..24, 0.1, 0.1), &truth, FRAME);
         let wanted = 0.1f64.hypot(0.1) / scale();
         assert!((all.value / wanted - 1.0).abs() < 0.03, "{all:?}");
         // A shift changes nothing of the noise.
-        let shifted = noise(&pictures(0..8, 0.2, 0.1), WIDTH);
+        let shifted = own_noise(&pictures(0..8, 0.2, 0.1));
         let (one, other) = (shifted.value * power(&pictures(0..8, 0.2, 0.1)).sqrt(), 0.1);
         assert!((one / other - 1.0).abs() < 0.03, "{one}");
     }
@@ -204,8 +222,11 @@ mod tests {
                 .sum::<f64>()
         };
         assert!((of(&four[0]) / of(&mean) - 4.0).abs() < 0.5);
-        assert_eq!(blocks(5, 15, |_| 2.0), [2.0]);
-        assert_eq!(blocks(9, 81, |pixel| pixel as f64).len(), 4);
+        let frame = |width: usize, block: usize| Frame { width, block };
+        assert_eq!(blocks(frame(5, 8), 15, |_| 2.0), [2.0]);
+        assert_eq!(blocks(frame(9, 8), 81, |pixel| pixel as f64).len(), 4);
+        assert_eq!(blocks(frame(9, 3), 81, |_| 1.0), [1.0; 9]);
+        assert!(blocks(frame(0, 0), 0, |_| 1.0).is_empty());
     }
 
     fn picture_of_truth() -> Pixels {

@@ -27,57 +27,87 @@ pub struct Choice {
 /// What a setting does to a picture.
 #[derive(Debug, Clone, Copy)]
 struct Factor {
+    /// Multiplies the time that tracing takes.
     seconds: f64,
     processor: Option<f64>,
-    /// Squared.
+    /// Seconds more of the whole picture, however many paths.
+    more: f64,
+    more_processor: Option<f64>,
+    /// Relative square error however many paths.
     bias: f64,
-    /// Squared.
+    /// Multiplies the squared noise.
     noise: f64,
 }
 
 impl Factor {
+    const NEUTRAL: Self = Self {
+        seconds: 1.0,
+        processor: Some(1.0),
+        more: 0.0,
+        more_processor: Some(0.0),
+        bias: 0.0,
+        noise: 1.0,
+    };
+
     /// Both together.
     fn and(self, other: Self) -> Self {
+        let both = |one: Option<f64>, two: Option<f64>, join: fn(f64, f64) -> f64| {
+            one.zip(two).map(|(one, two)| join(one, two))
+        };
         Self {
             seconds: self.seconds * other.seconds,
-            processor: self.processor.zip(other.processor).map(|(a, b)| a * b),
+            processor: both(self.processor, other.processor, |a, b| a * b),
+            more: self.more + other.more,
+            more_processor: both(self.more_processor, other.more_processor, |a, b| a + b),
             bias: self.bias + other.bias,
             noise: self.noise * other.noise,
         }
     }
 }
 
-const NEUTRAL: Factor = Factor {
-    seconds: 1.0,
-    processor: Some(1.0),
-    bias: 0.0,
-    noise: 1.0,
-};
+/// A ratio that can be multiplied by.
+fn ratio(one: f64, other: f64) -> Option<f64> {
+    let ratio = one / other;
+    (ratio > 0.0 && ratio.is_finite()).then_some(ratio)
+}
 
-/// What a dial's settings do to a picture, beside what it is set to.
-fn factors(curve: &Curve) -> Option<Vec<Factor>> {
+/// What a dial's settings do to a picture, `fixed` seconds of which (of the clock and of
+/// processors) no path takes; `None` where they have no place among the others.
+fn factors(curve: &Curve, fixed: (f64, f64)) -> Option<Vec<Factor>> {
     let now = curve.point(&curve.current)?;
-    let ratio = |one: f64, other: f64| {
-        let ratio = one / other;
-        (ratio > 0.0 && ratio.is_finite()).then_some(ratio)
-    };
-    let all = curve.settings.iter().map(|point| {
-        let processor = point.processor_seconds.zip(now.processor_seconds);
-        let factor = Factor {
-            seconds: ratio(point.seconds, now.seconds)?,
-            processor: processor.and_then(|(one, other)| ratio(one, other)),
-            ..NEUTRAL
-        };
+    let crude = curve.settings.first()?;
+    let of = |point: &Point| {
+        let processor = |other: &Point| point.processor_seconds.zip(other.processor_seconds);
         match curve.measure {
-            Measure::Bias => Some(Factor {
-                bias: point.error * point.error,
-                ..factor
-            }),
-            Measure::Noise | Measure::Shown => {
-                let noise = ratio(point.error, now.error)?;
+            Measure::Bias | Measure::Noise => {
+                let noise = match curve.measure {
+                    Measure::Noise => ratio(point.error, now.error)?,
+                    // Where nothing is known of it, it is as it was.
+                    _ => (point.noise.zip(now.noise))
+                        .and_then(|(one, other)| ratio(one, other))
+                        .unwrap_or(1.0),
+                };
+                let bias = match curve.measure {
+                    Measure::Bias => point.error * point.error,
+                    _ => 0.0,
+                };
                 Some(Factor {
+                    seconds: ratio(point.seconds - fixed.0, now.seconds - fixed.0)?,
+                    processor: processor(now)
+                        .and_then(|(one, other)| ratio(one - fixed.1, other - fixed.1)),
+                    bias,
                     noise: noise * noise,
-                    ..factor
+                    ..Factor::NEUTRAL
+                })
+            }
+            // The crude end shows what was traced as it is.
+            Measure::Shown => {
+                let noise = ratio(point.error, crude.error)?;
+                Some(Factor {
+                    more: point.seconds - crude.seconds,
+                    more_processor: processor(crude).map(|(one, other)| one - other),
+                    noise: noise * noise,
+                    ..Factor::NEUTRAL
                 })
             }
             // What has another unit does not add to these, nor does another engine.
@@ -87,8 +117,8 @@ fn factors(curve: &Curve) -> Option<Vec<Factor>> {
             | Measure::Rounding
             | Measure::Engine => None,
         }
-    });
-    all.collect()
+    };
+    curve.settings.iter().map(of).collect()
 }
 
 /// How much a dial's settings do to time and error, in powers of e.
@@ -103,40 +133,138 @@ fn spread(factors: &[Factor]) -> f64 {
     of(|factor| factor.seconds) + of(|factor| factor.noise) + of(|factor| factor.bias + 1e-4)
 }
 
-impl Accuracy {
-    /// The picture as it is asked for: its point on the curve of its paths, or of any other
-    /// dial of a picture.
-    fn now(&self) -> Option<(&Point, f64)> {
-        let of = |curve: &&Curve| curve.measure == Measure::Noise;
-        let curve = self.dials.iter().find(of)?;
-        let point = curve.point(&curve.current)?;
-        Some((point, point.error))
+/// One dial of the model.
+struct Dial<'a> {
+    curve: &'a Curve,
+    factors: Vec<Factor>,
+    /// What it is set to, among its settings.
+    now: usize,
+}
+
+/// All dials that add, and the picture that their factors multiply.
+struct Model<'a> {
+    dials: Vec<Dial<'a>>,
+    /// Seconds, of the clock and of processors, that tracing takes.
+    seconds: f64,
+    processor: Option<f64>,
+    /// Relative root mean square of what is traced.
+    noise: f64,
+}
+
+impl<'a> Model<'a> {
+    /// What the curves say; `None` where none says how much noise there is.
+    fn new(accuracy: &'a Accuracy) -> Option<Self> {
+        let point = (accuracy.dials.iter())
+            .filter(|curve| curve.measure == Measure::Noise)
+            .find_map(|curve| curve.point(&curve.current))?;
+        let shown = accuracy
+            .dials
+            .iter()
+            .filter(|curve| curve.measure == Measure::Shown);
+        let fixed = shown.filter_map(|curve| {
+            let (now, crude) = (curve.point(&curve.current)?, curve.settings.first()?);
+            let processor = now.processor_seconds.zip(crude.processor_seconds);
+            let processor = processor.map_or(0.0, |(now, crude)| now - crude);
+            Some((now.seconds - crude.seconds, processor))
+        });
+        let fixed = fixed.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+        let dials: Vec<Dial<'a>> = (accuracy.dials.iter())
+            .filter_map(|curve| {
+                let now = (curve.settings.iter()).position(|point| point.value == curve.current)?;
+                Some(Dial {
+                    factors: factors(curve, fixed)?,
+                    curve,
+                    now,
+                })
+            })
+            .collect();
+        let now = dials.iter().map(|dial| dial.factors[dial.now]);
+        let now = now.fold(Factor::NEUTRAL, Factor::and);
+        Some(Self {
+            seconds: (point.seconds - now.more).max(0.0),
+            processor: (point.processor_seconds.zip(now.more_processor))
+                .map(|(all, more)| (all - more).max(0.0)),
+            noise: point.error,
+            dials,
+        })
     }
 
-    /// The front, fastest first. Empty where no curve says how much noise there is.
-    pub fn front(&self) -> Vec<Choice> {
-        let Some((_, noise)) = self.now() else {
-            return Vec::new();
-        };
-        let mut dials: Vec<(&Curve, Vec<Factor>)> = (self.dials.iter())
-            .filter_map(|curve| Some((curve, factors(curve)?)))
-            .collect();
-        dials.sort_by(|one, other| spread(&other.1).total_cmp(&spread(&one.1)));
+    /// What settings come to, each dial's by `at`.
+    fn come_to(&self, at: impl Fn(usize) -> usize) -> Factor {
+        let chosen = (self.dials.iter().enumerate()).map(|(dial, own)| own.factors[at(dial)]);
+        chosen.fold(Factor::NEUTRAL, Factor::and)
+    }
+
+    fn seconds(&self, whole: &Factor) -> f64 {
+        self.seconds * whole.seconds + whole.more
+    }
+
+    fn error(&self, whole: &Factor) -> f64 {
+        (whole.bias + self.noise * self.noise * whole.noise).sqrt()
+    }
+
+    fn choice(&self, at: impl Fn(usize) -> usize) -> Choice {
+        let whole = self.come_to(&at);
+        let processor = self
+            .processor
+            .zip(whole.processor)
+            .zip(whole.more_processor);
+        Choice {
+            settings: (self.dials.iter().enumerate())
+                .map(|(dial, own)| {
+                    let point = &own.curve.settings[at(dial)];
+                    (own.curve.name.clone(), point.value.clone())
+                })
+                .collect(),
+            seconds: self.seconds(&whole),
+            processor_seconds: processor.map(|((base, factor), more)| base * factor + more),
+            error: self.error(&whole),
+        }
+    }
+
+    /// The dials that do most, as many as can be combined in all ways.
+    fn combined(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.dials.len()).collect();
+        let spread = |dial: &usize| spread(&self.dials[*dial].factors);
+        order.sort_by(|one, other| spread(other).total_cmp(&spread(one)));
         let mut count = 1usize;
-        let fits = |(_, factors): &&(&Curve, Vec<Factor>)| {
-            let more = count.saturating_mul(factors.len());
+        order.retain(|dial| {
+            let more = count.saturating_mul(self.dials[*dial].factors.len());
             let fits = more <= MOST;
             if fits {
                 count = more;
             }
             fits
+        });
+        order
+    }
+
+    /// Which setting each dial has in a combination of those that are `combined`.
+    fn digits(&self, combined: &[usize], mut choice: usize) -> Vec<usize> {
+        let mut at: Vec<usize> = self.dials.iter().map(|dial| dial.now).collect();
+        for dial in combined {
+            let settings = self.dials[*dial].factors.len();
+            at[*dial] = choice % settings;
+            choice /= settings;
+        }
+        at
+    }
+}
+
+impl Accuracy {
+    /// The front, fastest first. Empty where no curve says how much noise there is.
+    pub fn front(&self) -> Vec<Choice> {
+        let Some(model) = Model::new(self) else {
+            return Vec::new();
         };
-        let dials: Vec<&(&Curve, Vec<Factor>)> = dials.iter().filter(fits).collect();
+        let combined = model.combined();
+        let settings = combined.iter().map(|dial| model.dials[*dial].factors.len());
+        let count: usize = settings.product();
         let mut all: Vec<(f64, f64, usize)> = (0..count)
             .map(|choice| {
-                let whole = multiplied(&dials, choice);
-                let error = (whole.bias + noise * noise * whole.noise).sqrt();
-                (whole.seconds, error, choice)
+                let digits = model.digits(&combined, choice);
+                let whole = model.come_to(|dial| digits[dial]);
+                (model.seconds(&whole), model.error(&whole), choice)
             })
             .collect();
         all.sort_by(|one, other| {
@@ -152,29 +280,27 @@ impl Accuracy {
             better
         });
         (all.into_iter())
-            .filter_map(|(_, _, choice)| self.predict(&self.in_order(&dials, choice)))
+            .map(|(_, _, choice)| {
+                let digits = model.digits(&combined, choice);
+                model.choice(|dial| digits[dial])
+            })
             .collect()
     }
 
     /// What the curves say of these settings, all other dials as they are; `None` where a curve
     /// has none of them, or none says how much noise there is.
     pub fn predict(&self, settings: &[(String, String)]) -> Option<Choice> {
-        let (now, noise) = self.now()?;
-        let whole = settings.iter().try_fold(NEUTRAL, |whole, (name, value)| {
-            let curve = self.dials.iter().find(|curve| curve.name == *name)?;
-            let at = curve
-                .settings
+        let model = Model::new(self)?;
+        let mut at: Vec<usize> = model.dials.iter().map(|dial| dial.now).collect();
+        for (name, value) in settings {
+            let dial = model
+                .dials
                 .iter()
-                .position(|point| point.value == *value)?;
-            Some(whole.and(factors(curve)?[at]))
-        })?;
-        Some(Choice {
-            settings: settings.to_vec(),
-            seconds: now.seconds * whole.seconds,
-            processor_seconds: (whole.processor.zip(now.processor_seconds))
-                .map(|(factor, seconds)| factor * seconds),
-            error: (whole.bias + noise * noise * whole.noise).sqrt(),
-        })
+                .position(|dial| dial.curve.name == *name)?;
+            let points = &model.dials[dial].curve.settings;
+            at[dial] = points.iter().position(|point| point.value == *value)?;
+        }
+        Some(model.choice(|dial| at[dial]))
     }
 
     /// The most accurate settings that take no longer than `seconds`; the fastest of all where
@@ -192,37 +318,6 @@ impl Accuracy {
         let good = front.iter().find(|choice| choice.error <= error);
         good.or(front.last()).cloned()
     }
-
-    fn in_order(&self, dials: &[&(&Curve, Vec<Factor>)], choice: usize) -> Vec<(String, String)> {
-        let mut chosen: Vec<(usize, (String, String))> = (dials.iter())
-            .zip(digits(dials, choice))
-            .map(|((curve, _), at)| {
-                let place = self.dials.iter().position(|other| other.name == curve.name);
-                let setting = (curve.name.clone(), curve.settings[at].value.clone());
-                (place.unwrap_or_default(), setting)
-            })
-            .collect();
-        chosen.sort_by_key(|(place, _)| *place);
-        chosen.into_iter().map(|(_, setting)| setting).collect()
-    }
-}
-
-/// Which setting of each dial a combination has.
-fn digits(dials: &[&(&Curve, Vec<Factor>)], mut choice: usize) -> Vec<usize> {
-    let digit = |(_, factors): &&(&Curve, Vec<Factor>)| {
-        let at = choice % factors.len();
-        choice /= factors.len();
-        at
-    };
-    dials.iter().map(digit).collect()
-}
-
-/// What a combination does to the picture.
-fn multiplied(dials: &[&(&Curve, Vec<Factor>)], choice: usize) -> Factor {
-    let chosen = (dials.iter())
-        .zip(digits(dials, choice))
-        .map(|((_, factors), at)| factors[at]);
-    chosen.fold(NEUTRAL, Factor::and)
 }
 
 #[cfg(test)]
@@ -270,6 +365,7 @@ mod tests {
                 curve("spp", Measure::Noise, "64", &spp),
             ],
             trials: Vec::new(),
+            chosen: Vec::new(),
         }
     }
 
@@ -314,5 +410,47 @@ mod tests {
         let mut silent = measured;
         silent.dials.pop();
         assert_eq!(silent.front(), []);
+    }
+
+    #[test]
+    fn what_is_asked_for_counts_and_filtering_is_of_what_is_traced() {
+        let mut measured = measured();
+        // Of 66 seconds two are the filter's, which leaves half of the noise.
+        for point in &mut measured.dials[2].settings {
+            point.seconds += 2.0;
+        }
+        let denoise = [("off", 64.0, 0.12), ("on", 66.0, 0.06)];
+        measured
+            .dials
+            .push(curve("denoise", Measure::Shown, "on", &denoise));
+        measured.dials[1].current = "8".to_owned();
+        let set = |settings: &[(&str, &str)]| {
+            let owned = settings.iter();
+            let owned: Vec<_> = owned.map(|(a, b)| (a.to_string(), b.to_string())).collect();
+            measured.predict(&owned).unwrap()
+        };
+        // The order that is asked for is wrong by 0.01, whatever else is set.
+        let now = set(&[]);
+        assert!(
+            (now.error - 0.01f64.hypot(0.5 * 0.1)).abs() < 1e-12,
+            "{now:?}"
+        );
+        assert!((now.seconds - 66.0).abs() < 1e-12);
+        let off = set(&[("denoise", "off")]);
+        assert!((off.error - 0.01f64.hypot(0.1)).abs() < 1e-12, "{off:?}");
+        assert!((off.seconds - 64.0).abs() < 1e-12);
+        // The filter takes its time however few paths there are.
+        let few = set(&[("spp", "1")]);
+        assert!((few.seconds - 3.0).abs() < 1e-12, "{few:?}");
+        let front = measured.front();
+        assert!(front.iter().all(|choice| choice.settings.len() == 3));
+        // What is asked for lies on the front or above it.
+        let beats = |choice: &Choice| {
+            choice.seconds <= now.seconds + 1e-9 && choice.error <= now.error + 1e-9
+        };
+        assert!(front.iter().any(beats), "{now:?} {front:?}");
+        // A setting that no ladder has says nothing of the rest.
+        measured.dials[1].current = "9".to_owned();
+        assert!((measured.predict(&[]).unwrap().error - 0.05).abs() < 1e-12);
     }
 }

@@ -9,7 +9,7 @@ use super::AccuracyError;
 use super::axis::{Asked, Axis};
 use super::clock::Took;
 use super::curve::{Accuracy, Curve, Machine, Point, Trial};
-use super::difference;
+use super::difference::{self, BLOCK, Frame};
 use super::estimate::Estimate;
 use super::studio::{Exposing, Studio, Take, Takes, piece};
 use super::woven::{Synthesised, Woven};
@@ -21,6 +21,7 @@ use crate::formats::png::Depth;
 use crate::job::Job;
 use crate::plan::{Measure, Subject};
 use crate::random::Random;
+use crate::synthesis::MOST_AT_ONCE;
 
 /// How much is measured.
 #[derive(
@@ -135,7 +136,7 @@ pub fn measure(
     if let Some(axis) = idle {
         return Err(AccuracyError::Idle(axis.name()));
     }
-    let key = key(design, &asked, measuring.effort);
+    let key = measuring.key(design);
     let before = (measuring.before.clone()).filter(|before| before.key == key);
     let piece = piece(design, &asked.request);
     let mut accuracy = before.unwrap_or_else(|| Accuracy {
@@ -145,20 +146,32 @@ pub fn measure(
         machine: machine(),
         piece: [piece.width, piece.height],
         piece_mm: piece.width_mm.unwrap_or_default().into(),
+        chosen: Vec::new(),
         dials: Vec::new(),
         trials: Vec::new(),
     });
     let begun = std::time::Instant::now();
     let mut bench = Bench::new(design, asked, store, job)?;
-    let axes = bench.chosen(measuring, job)?;
-    let left: Vec<Axis> = (axes.into_iter())
-        .filter(|axis| !accuracy.dials.iter().any(|curve| curve.name == axis.name()))
-        .collect();
+    let mut names: Vec<&str> = measuring.axes.iter().map(Axis::name).collect();
+    if names.is_empty() {
+        // What was chosen once stays so: another trial might choose otherwise.
+        if accuracy.chosen.is_empty() {
+            accuracy.chosen = bench.chosen(measuring.effort, job)?;
+        }
+        names = accuracy.chosen.iter().map(String::as_str).collect();
+    }
+    let mut left: Vec<Axis> = Vec::new();
+    for name in names {
+        let known = accuracy.dials.iter().any(|curve| curve.name == name);
+        if !known && !left.iter().any(|axis| axis.name() == name) {
+            left.push(Axis::named(name)?);
+        }
+    }
     let time = measuring.effort.seconds() - begun.elapsed().as_secs_f64();
     let runs = bench.runs(&left, measuring.effort, time)?;
     for (number, axis) in left.iter().enumerate() {
         let share = (number as f32, left.len() as f32);
-        let (curve, crops) = bench.curve(axis, &axis.ladder(), runs, &|stage| {
+        let (curve, crops) = bench.curve(axis, &bench.ladder(axis), runs, &|stage| {
             let stage = (share.0 + stage) / share.1;
             job.report(&format!("measuring {}", axis.name()), stage);
         })?;
@@ -196,40 +209,55 @@ pub fn options(asked: &Asked) -> String {
     still.trim().to_owned()
 }
 
-/// What measurements have to have in common to stand in one file.
-fn key(design: &Design, asked: &Asked, effort: Effort) -> String {
-    let text = crate::formats::ron::write(design).unwrap_or_default();
-    let said = format!(
-        "{} {} {effort} {:?} {}",
-        env!("CARGO_PKG_VERSION"),
-        options(asked),
-        machine(),
-        text
-    );
-    blake3::hash(said.as_bytes()).to_hex()[..16].to_owned()
+impl Measuring {
+    /// What measurements have to have in common to stand in one file: program and machine, the
+    /// design, the picture with its light, and how much is measured.
+    pub fn key(&self, design: &Design) -> String {
+        let text = crate::formats::ron::write(design).unwrap_or_default();
+        let light = self.asked.request.light.file();
+        let light = light.and_then(|path| std::fs::read(path).ok());
+        let light = light.map(|bytes| blake3::hash(&bytes).to_hex());
+        let said = format!(
+            "{} {} {} {:?} {light:?} {text}",
+            env!("CARGO_PKG_VERSION"),
+            options(&self.asked),
+            self.effort,
+            machine(),
+        );
+        blake3::hash(said.as_bytes()).to_hex()[..16].to_owned()
+    }
 }
 
 /// This machine.
 fn machine() -> Machine {
+    let processor = sysinfo::System::new().ok().and_then(|mut system| {
+        system.refresh_cpu_list(sysinfo::CpuRefreshKind::nothing());
+        let first = system.cpus().first()?;
+        Some(first.brand().trim().to_owned())
+    });
+    let [os, kind] = [std::env::consts::OS, std::env::consts::ARCH];
+    let processor = processor.filter(|name| !name.is_empty());
     Machine {
-        system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        system: format!("{os}, {}", processor.as_deref().unwrap_or(kind)),
         threads: rayon::current_num_threads(),
     }
 }
 
 /// Where dials are measured.
 struct Bench<'d> {
-    design: &'d Arc<Design>,
+    /// In the colourway that is asked for.
+    design: Arc<Design>,
     asked: Asked,
     store: &'d ExemplarStore,
     /// Cancelled with the work, and told nothing.
     quiet: Job,
     studio: Studio<'d>,
-    woven: Option<Woven<'d>>,
+    woven: Option<Woven>,
     /// What the picture as it is asked for converges to.
     truth: Option<(Runs, Takes)>,
-    /// Pixels across of the piece.
-    width: usize,
+    /// Pixels across of the piece, and its blocks: a crossing wide, as what is wrong repeats
+    /// from crossing to crossing.
+    frame: Frame,
     /// Pixels of the picture for each of the piece.
     scale: f64,
     tone: Tone,
@@ -241,13 +269,17 @@ type Going<'g> = &'g dyn Fn(f32);
 
 impl<'d> Bench<'d> {
     fn new(
-        design: &'d Arc<Design>,
+        design: &Arc<Design>,
         asked: Asked,
         store: &'d ExemplarStore,
         job: &Job,
     ) -> Result<Self, AccuracyError> {
         let coloured = crate::engine::coloured(design, &asked.request)?;
         let piece = piece(&coloured, &asked.request);
+        let pixels_per_mm = piece.width as f32 / piece.width_mm.unwrap_or(1.0);
+        let sett = coloured.sett();
+        let pitch = sett.ends.mean_pitch_mm().max(sett.picks.mean_pitch_mm());
+        let crossing = (pitch * pixels_per_mm).ceil() as usize;
         let pixels = |request: &crate::engine::StillRequest| {
             f64::from(request.width) * f64::from(request.height)
         };
@@ -256,13 +288,16 @@ impl<'d> Bench<'d> {
             studio: Studio::new(Arc::clone(design), store),
             woven: None,
             truth: None,
-            width: piece.width as usize,
+            frame: Frame {
+                width: piece.width as usize,
+                block: crossing.clamp(BLOCK, (piece.width as usize / 4).max(BLOCK)),
+            },
             scale: pixels(&asked.request) / pixels(&piece),
             tone: Tone {
                 exposure: asked.request.exposure_ev,
             },
-            pixels_per_mm: piece.width as f32 / piece.width_mm.unwrap_or(1.0),
-            design,
+            pixels_per_mm,
+            design: coloured,
             asked,
             store,
         })
@@ -272,33 +307,50 @@ impl<'d> Bench<'d> {
         self.asked.request.stop.spp.unwrap_or(1).max(1)
     }
 
-    /// The dials to be measured, in the order of their table.
-    fn chosen(&mut self, measuring: &Measuring, job: &Job) -> Result<Vec<Axis>, AccuracyError> {
-        if !measuring.axes.is_empty() {
-            return Ok(measuring.axes.clone());
-        }
+    /// The settings of a dial, with the one that is asked for among them.
+    fn ladder(&self, axis: &Axis) -> Vec<String> {
+        with_current(&axis.ladder(), axis.current(&self.asked))
+    }
+
+    /// Whether the synthesis of the whole design can be measured.
+    fn is_small(&self) -> bool {
+        u64::from(self.design.ends()) * u64::from(self.design.picks()) <= MOST_AT_ONCE
+    }
+
+    /// The dials that matter most, in the order of their table. Of very large designs the
+    /// synthesis is left out: their pictures make only what they show.
+    fn chosen(&mut self, effort: Effort, job: &Job) -> Result<Vec<String>, AccuracyError> {
+        let of_cloth = |axis: &Axis| {
+            matches!(
+                axis.measure(),
+                Measure::Continuity | Measure::Seams | Measure::Repetition
+            )
+        };
         let all = Axis::all().into_iter();
-        let all: Vec<Axis> = all.filter(|axis| axis.applies(&self.asked)).collect();
-        let most = measuring.effort.dials();
+        let all: Vec<Axis> = all
+            .filter(|axis| axis.applies(&self.asked) && (self.is_small() || !of_cloth(axis)))
+            .collect();
+        let names = |kept: &[usize]| kept.iter().map(|at| all[*at].name().to_owned()).collect();
+        let most = effort.dials();
         if all.len() <= most {
-            return Ok(all);
+            return Ok(names(&(0..all.len()).collect::<Vec<_>>()));
         }
         let asked = self.asked.clone();
         self.studio.take(&asked, WARM, &self.quiet)?;
         let whole = self.studio.take(&asked, WARM, &self.quiet)?;
-        let whole = self.point("", &[whole], WARM.spp, Estimate::exact(0.0));
+        let paths = Paths::new(WARM.spp, self.spp());
+        let whole = self.point("", &[whole], paths, Estimate::exact(0.0));
         let mut matter = Vec::with_capacity(all.len());
         for (number, axis) in all.iter().enumerate() {
             job.report("trying the dials", number as f32 / all.len() as f32);
-            let ladder = axis.ladder();
-            let ends = [ladder[0], axis.reference()];
+            let ends = [axis.ladder()[0], axis.reference()].map(str::to_owned);
             let (curve, _) = self.curve(axis, &ends, TRIED, &|_| {})?;
             matter.push((number, matters(&curve, whole.seconds)));
         }
         matter.sort_by(|one, other| other.1.total_cmp(&one.1));
         let mut kept: Vec<usize> = matter.iter().take(most).map(|(at, _)| *at).collect();
         kept.sort_unstable();
-        Ok(kept.into_iter().map(|at| all[at]).collect())
+        Ok(names(&kept))
     }
 
     /// With how many paths each setting's picture is taken so that all takes `time` seconds.
@@ -350,7 +402,7 @@ impl<'d> Bench<'d> {
     fn curve(
         &mut self,
         axis: &Axis,
-        ladder: &[&'static str],
+        ladder: &[String],
         runs: Runs,
         going: Going<'_>,
     ) -> Result<(Curve, Crops), AccuracyError> {
@@ -410,7 +462,7 @@ impl<'d> Bench<'d> {
         Ok(all)
     }
 
-    fn settings(&self, axis: &Axis, ladder: &[&str]) -> Result<Vec<Asked>, AccuracyError> {
+    fn settings(&self, axis: &Axis, ladder: &[String]) -> Result<Vec<Asked>, AccuracyError> {
         let set = ladder.iter().map(|value| axis.set(&self.asked, value));
         set.collect()
     }
@@ -419,7 +471,7 @@ impl<'d> Bench<'d> {
     fn biased(
         &mut self,
         axis: &Axis,
-        ladder: &[&'static str],
+        ladder: &[String],
         runs: Runs,
         going: Going<'_>,
     ) -> Result<(Vec<Point>, Crops), AccuracyError> {
@@ -431,15 +483,18 @@ impl<'d> Bench<'d> {
         };
         let means: Vec<_> = traced.iter().map(|takes| difference::mean(takes)).collect();
         let seen: Vec<_> = (all.iter().zip(&means))
-            .map(|(takes, mean)| takes.shown(self.width, mean, self.tone))
+            .map(|(takes, mean)| takes.shown(self.frame.width, mean, self.tone))
             .collect();
         let far: Vec<_> = (seen.iter())
             .map(|shown| shown.at_reading_distance(self.pixels_per_mm))
             .collect();
+        let (power, paths) = (difference::power(reference), self.paths(runs.spp));
         let mut points = Vec::with_capacity(ladder.len());
         for (at, value) in ladder.iter().enumerate() {
-            let error = difference::bias(&traced[at], reference, self.width);
-            let mut point = self.point(value, &all[at].0, runs.spp, error);
+            let error = difference::bias(&traced[at], reference, self.frame);
+            let mut point = self.point(value, &all[at].0, paths, error);
+            let noise = difference::noise(&traced[at], power, self.frame);
+            point.noise = Some(noise.value * paths.fewer().sqrt());
             let looks = far[at].difference(&far[far.len() - 1]);
             (point.delta_e, point.ssim) = (Some(looks.delta_e), Some(looks.ssim));
             points.push(point);
@@ -452,53 +507,53 @@ impl<'d> Bench<'d> {
     fn noisy(
         &mut self,
         axis: &Axis,
-        ladder: &[&'static str],
+        ladder: &[String],
         runs: Runs,
         going: Going<'_>,
     ) -> Result<(Vec<Point>, Crops), AccuracyError> {
         if axis.name() == "spp" {
-            return self.paths(ladder, runs, going);
+            return self.number_of_paths(ladder, runs, going);
         }
         let settings = self.settings(axis, ladder)?;
         let all = self.take_all(&settings, runs, 1, going)?;
         let mut points = Vec::with_capacity(ladder.len());
-        // Paths are independent of each other: noise falls with the root of their number.
-        let fewer = (f64::from(runs.spp) / f64::from(self.spp())).sqrt();
+        let paths = self.paths(runs.spp);
         for (value, takes) in ladder.iter().zip(&all) {
-            let noise = difference::noise(&takes.traced(), self.width).scaled(fewer);
-            points.push(self.point(value, &takes.0, runs.spp, noise));
+            let noise = self.noise(&takes.traced(), paths);
+            points.push(self.point(value, &takes.0, paths, noise));
         }
         Ok((points, self.crops(&all)))
     }
 
     /// Noise by the number of paths: measured as far as that is quick, then predicted.
-    fn paths(
+    fn number_of_paths(
         &mut self,
-        ladder: &[&'static str],
+        ladder: &[String],
         runs: Runs,
         going: Going<'_>,
     ) -> Result<(Vec<Point>, Crops), AccuracyError> {
         let asked = self.asked.clone();
         let (mut points, mut crops): (Vec<Point>, Crops) = (Vec::new(), Vec::new());
-        let mut last: Option<(f64, Point)> = None;
+        let mut last: Option<(u32, Takes)> = None;
         for value in ladder {
-            let spp: u32 = value.parse().unwrap_or(1);
-            let known = last.as_ref().filter(|_| spp > LONGER * runs.spp);
-            if let Some((measured, point)) = known {
-                let more = f64::from(spp) / measured;
-                points.push(predicted(value, point, more));
-                continue;
+            let wanted: u32 = value.parse().unwrap_or(1);
+            let measured = wanted <= LONGER * runs.spp || last.is_none();
+            if measured {
+                let exposed = Runs {
+                    spp: wanted,
+                    ..runs
+                };
+                let all = self.take_all(std::slice::from_ref(&asked), exposed, 1, going)?;
+                crops.extend(self.crops(&all));
+                last = all.into_iter().next().map(|takes| (wanted, takes));
             }
-            let exposed = Runs { spp, ..runs };
-            let all = self.take_all(std::slice::from_ref(&asked), exposed, 1, going)?;
-            let Some(takes) = all.first() else { continue };
-            let noise = difference::noise(&takes.traced(), self.width);
-            // The time of this many paths, not of those that are asked for.
-            let more = f64::from(spp) / f64::from(self.spp());
-            let mut point = self.point(value, &takes.0, spp, noise);
-            scale_time(&mut point, more);
-            crops.extend(self.crops(&all));
-            last = Some((f64::from(spp), point.clone()));
+            let Some((taken, takes)) = &last else {
+                continue;
+            };
+            let paths = Paths::new(*taken, wanted);
+            let noise = self.noise(&takes.traced(), paths);
+            let mut point = self.point(value, &takes.0, paths, noise);
+            point.measured = measured;
             points.push(point);
         }
         Ok((points, crops))
@@ -509,7 +564,7 @@ impl<'d> Bench<'d> {
     fn shown(
         &mut self,
         axis: &Axis,
-        ladder: &[&'static str],
+        ladder: &[String],
         runs: Runs,
         going: Going<'_>,
     ) -> Result<(Vec<Point>, Crops), AccuracyError> {
@@ -527,23 +582,29 @@ impl<'d> Bench<'d> {
         };
         let converging = reference.traced();
         let far = reference
-            .shown(self.width, &difference::mean(&converging), self.tone)
+            .shown(self.frame.width, &difference::mean(&converging), self.tone)
             .at_reading_distance(self.pixels_per_mm);
         let mut points = Vec::with_capacity(ladder.len());
         let mut crops = Vec::with_capacity(ladder.len());
-        for (value, takes) in ladder.iter().zip(&all) {
+        for ((value, asked), takes) in ladder.iter().zip(&settings).zip(&all) {
             let clean = takes.clean();
             let Some(once) = clean.first() else { continue };
-            let seen = takes.shown(self.width, once, self.tone);
+            let seen = takes.shown(self.frame.width, once, self.tone);
             let error = match axis.measure() {
                 Measure::Rounding => {
                     let depth = self.depth_of(axis, value)?;
                     Estimate::exact(rounding(&seen.picture(), depth))
                 }
-                _ => difference::total(&clean, &converging, self.width),
+                _ => difference::total(&clean, &converging, self.frame),
             };
-            let mut point = self.point(value, &takes.0, exposed.spp, error);
+            let paths = match asked.renderer.refines {
+                true => self.paths(exposed.spp),
+                // It takes none, however many are asked for.
+                false => Paths::new(1, 1),
+            };
+            let mut point = self.point(value, &takes.0, paths, error);
             if axis.measure() != Measure::Rounding {
+                point.paths = Some(exposed.spp).filter(|_| asked.renderer.refines);
                 let looks = (seen.at_reading_distance(self.pixels_per_mm)).difference(&far);
                 (point.delta_e, point.ssim) = (Some(looks.delta_e), Some(looks.ssim));
             }
@@ -572,7 +633,7 @@ impl<'d> Bench<'d> {
     fn of_synthesis(
         &mut self,
         axis: &Axis,
-        ladder: &[&'static str],
+        ladder: &[String],
         runs: Runs,
         going: Going<'_>,
     ) -> Result<(Vec<Point>, Crops), AccuracyError> {
@@ -581,7 +642,7 @@ impl<'d> Bench<'d> {
         let woven = match self.woven.take() {
             Some(woven) => woven,
             None => Woven::new(
-                self.design,
+                Arc::clone(&self.design),
                 self.cloth_settings(&self.asked)?,
                 self.store,
                 job,
@@ -660,9 +721,12 @@ impl<'d> Bench<'d> {
             (said.seconds <= TRIAL_SECONDS * now).then_some((settings, said))
         });
         let all: Vec<_> = at_random.take(TRIALS).collect();
+        if all.is_empty() {
+            return Ok(Vec::new());
+        }
         let truth = self.take_all(std::slice::from_ref(&reference), runs, 1, &|_| {})?;
         let truth: Vec<difference::Pixels> = truth.iter().flat_map(Takes::traced).collect();
-        let fewer = (f64::from(runs.spp) / f64::from(self.spp())).sqrt();
+        let (power, paths) = (difference::power(&truth), self.paths(runs.spp));
         let mut trials = Vec::with_capacity(TRIALS);
         for (number, (settings, said)) in all.into_iter().enumerate() {
             going(number as f32 / TRIALS as f32);
@@ -670,11 +734,10 @@ impl<'d> Bench<'d> {
             let taken = self.take_all(std::slice::from_ref(&asked), runs, 1, &|_| {})?;
             let Some(takes) = taken.first() else { continue };
             let traced = takes.traced();
-            let bias = difference::bias(&traced, &truth, self.width).squared();
-            let noise = difference::noise(&traced, self.width)
-                .scaled(fewer)
-                .squared();
-            let point = self.point("", &takes.0, runs.spp, bias.plus(noise).root());
+            let bias = difference::bias(&traced, &truth, self.frame).squared();
+            let noise = difference::noise(&traced, power, self.frame);
+            let noise = noise.scaled(paths.fewer().sqrt()).squared();
+            let point = self.point("", &takes.0, paths, bias.plus(noise).root());
             self.studio.clear_but(&self.asked);
             trials.push(Trial {
                 settings,
@@ -697,16 +760,28 @@ impl<'d> Bench<'d> {
         (all.iter())
             .filter_map(|takes| {
                 let first = takes.0.first()?;
-                let shown = takes.shown(self.width, &first.traced, self.tone);
+                let shown = takes.shown(self.frame.width, &first.traced, self.tone);
                 Some(shown.picture())
             })
             .collect()
     }
 
-    /// The point of a setting whose pictures were taken with `spp` paths a pixel: its time is
-    /// that of the whole picture with all its paths.
-    fn point(&self, value: &str, takes: &[Take], spp: u32, error: Estimate) -> Point {
-        let more = f64::from(self.spp()) / f64::from(spp.max(1));
+    /// Paths of pictures taken with `taken` a pixel, and those that are asked for.
+    fn paths(&self, taken: u32) -> Paths {
+        Paths::new(taken, self.spp())
+    }
+
+    /// Noise of pictures with all their paths: paths are independent of each other, so that it
+    /// falls with the root of their number.
+    fn noise(&self, traced: &[difference::Pixels], paths: Paths) -> Estimate {
+        let power = difference::power(traced);
+        difference::noise(traced, power, self.frame).scaled(paths.fewer().sqrt())
+    }
+
+    /// The point of a setting from pictures of the piece: its time is that of the whole picture
+    /// with all its paths.
+    fn point(&self, value: &str, takes: &[Take], paths: Paths, error: Estimate) -> Point {
+        let more = 1.0 / paths.fewer();
         let scale = |took: Took, by: f64| Took {
             seconds: took.seconds * by,
             processor_seconds: took.processor_seconds.map(|seconds| seconds * by),
@@ -740,25 +815,47 @@ fn middle(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     known.map(|known| Estimate::median(&known).value)
 }
 
-/// Other times of the same point.
-fn scale_time(point: &mut Point, by: f64) {
-    point.seconds *= by;
-    point.seconds_interval = point.seconds_interval.map(|end| end * by);
-    point.processor_seconds = point.processor_seconds.map(|seconds| seconds * by);
+/// Paths a pixel.
+#[derive(Debug, Clone, Copy)]
+struct Paths {
+    taken: u32,
+    wanted: u32,
 }
 
-/// The point of `more` times as many paths.
-fn predicted(value: &str, point: &Point, more: f64) -> Point {
-    let less = 1.0 / more.sqrt();
-    let mut next = Point {
-        value: value.to_owned(),
-        error: point.error * less,
-        error_interval: point.error_interval.map(|ends| ends.map(|end| end * less)),
-        measured: false,
-        ..point.clone()
+impl Paths {
+    fn new(taken: u32, wanted: u32) -> Self {
+        Self { taken, wanted }
+    }
+
+    /// The share that was taken of those that are wanted.
+    fn fewer(self) -> f64 {
+        f64::from(self.taken.max(1)) / f64::from(self.wanted.max(1))
+    }
+}
+
+/// A ladder with `current` in its place among numbers, else before its reference.
+fn with_current(ladder: &[&str], current: String) -> Vec<String> {
+    let mut all: Vec<String> = ladder.iter().map(|&value| value.to_owned()).collect();
+    if all.contains(&current) {
+        return all;
+    }
+    let number = |value: &str| value.parse::<f64>().ok();
+    let numbers: Vec<f64> = ladder.iter().filter_map(|&value| number(value)).collect();
+    let rises = numbers.first() < numbers.last();
+    let own = number(&current);
+    let is_beyond = |value: &str| {
+        let beyond = number(value)
+            .zip(own)
+            .map(|(other, own)| (other > own) == rises);
+        beyond.unwrap_or(false)
     };
-    scale_time(&mut next, more);
-    next
+    let last = all.len().saturating_sub(1);
+    let at = ladder
+        .iter()
+        .position(|value| is_beyond(value))
+        .unwrap_or(last);
+    all.insert(at, current);
+    all
 }
 
 /// Root mean square of what rounding does to a picture's samples, of white.
@@ -790,4 +887,23 @@ fn matters(curve: &Curve, whole: f64) -> f64 {
     let time = ((beside + reference.seconds) / (beside + crude.seconds)).ln();
     let time = if time.is_finite() { time.abs() } else { 0.0 };
     time.min(3.0) + (crude.error - reference.error).abs().min(3.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_for_stands_in_its_place_on_the_ladder() {
+        let with = |ladder: &[&str], current: &str| with_current(ladder, current.to_owned());
+        assert_eq!(with(&["1", "16", "64"], "20"), ["1", "16", "20", "64"]);
+        assert_eq!(with(&["4", "2", "0"], "3"), ["4", "3", "2", "0"]);
+        assert_eq!(with(&["1", "0.1", "0"], "0.05"), ["1", "0.1", "0.05", "0"]);
+        assert_eq!(
+            with(&["1", "16", "never"], "32"),
+            ["1", "16", "32", "never"]
+        );
+        assert_eq!(with(&["1", "16", "64"], "100"), ["1", "16", "100", "64"]);
+        assert_eq!(with(&["off", "on"], "on"), ["off", "on"]);
+    }
 }

@@ -81,10 +81,13 @@ fn strip(crops: &Crops) -> Option<Picture> {
 /// What was measured as text.
 pub fn markdown(accuracy: &Accuracy) -> String {
     let mut text = format!(
-        "# What accuracy costs: {}\n\nThe times are of the picture `{}` on {} with {} threads \
-         (those of the synthesis of itself), the median of several; ± is half of a 95 % \
-         confidence interval. Pictures were taken of the middle {} × {} pixels, {:.3} mm wide. \
-         ΔE₀₀ and SSIM are against the reference, seen from 30 cm.\n",
+        "# What accuracy costs: {}\n\nThe times are of the picture `{}` on {} with {} threads, \
+         once its cloth is made (those of the synthesis are of that alone): the median of several, \
+         in brackets its 95 % confidence interval, of fewer than six their range. Errors are of the \
+         middle {} × {} pixels, {:.3} mm wide, and their intervals of that piece. ΔE₀₀ and SSIM are \
+         as seen from 30 cm, against the setting that the others are measured against; where what \
+         is shown is measured, against what the traced picture converges to, whose own noise is in \
+         them.\n",
         accuracy.design,
         accuracy.picture,
         accuracy.machine.system,
@@ -139,8 +142,9 @@ fn together(text: &mut String, accuracy: &Accuracy) {
     let errors = count(&|trial| within(trial.predicted_error, trial.error));
     let _ = write!(
         text,
-        "\nHow far they add, on {} settings at random: {times} times and {errors} errors are \
-         within a quarter of what the curves say.\n\n| settings | time said, s | time, s | error said | error |\n\
+        "\nHow far they add, on {} settings at random that are not said to take much longer, with \
+         their paths and filtering as they are: {times} times and {errors} errors are within a \
+         quarter of what the curves say.\n\n| settings | time said, s | time, s | error said | error |\n\
          |---|--:|--:|--:|--:|\n",
         accuracy.trials.len()
     );
@@ -192,26 +196,24 @@ fn row(curve: &Curve, point: &Point) -> String {
     let maybe = |value: Option<f64>, digits: usize| {
         value.map_or_else(String::new, |value| format!("{value:.digits$}"))
     };
-    let half = |[low, high]: [f64; 2]| 0.5 * (high - low);
-    let error = match point.error_interval {
-        Some(ends) => format!("{} ± {}", number(point.error), number(half(ends))),
-        None => number(point.error),
+    let between = |value: f64, [low, high]: [f64; 2]| match low < high {
+        true => format!("{} ({} to {})", number(value), number(low), number(high)),
+        false => number(value),
     };
+    let ends = point.error_interval.unwrap_or([point.error; 2]);
+    let error = between(point.error, ends);
+    let paths = point.paths.map(|paths| format!("error at {paths} paths"));
     let marks = [
         (point.value == curve.current, "now"),
         (Some(&point.value) == curve.knee.as_ref(), "knee"),
         (!point.measured, "predicted"),
     ];
-    let marks: Vec<&str> = marks
-        .iter()
-        .filter(|mark| mark.0)
-        .map(|mark| mark.1)
-        .collect();
+    let marks = marks.iter().filter(|mark| mark.0).map(|mark| mark.1);
+    let marks: Vec<&str> = marks.chain(paths.as_deref()).collect();
     format!(
-        "| {} | {} ± {} | {} | {error} | {} | {} | {} |",
+        "| {} | {} | {} | {error} | {} | {} | {} |",
         point.value,
-        number(point.seconds),
-        number(half(point.seconds_interval)),
+        between(point.seconds, point.seconds_interval),
         point.processor_seconds.map_or_else(String::new, number),
         maybe(point.delta_e, 2),
         maybe(point.ssim, 3),
@@ -264,6 +266,7 @@ mod tests {
             piece_mm: 3.0,
             dials: vec![curve],
             trials: Vec::new(),
+            chosen: Vec::new(),
         }
     }
 
@@ -297,7 +300,7 @@ mod tests {
     fn the_text_says_what_it_is_of_and_marks_settings() {
         let text = markdown(&accuracy());
         assert!(
-            text.contains("| 8 | 2.00 ± 0 |  | 0.0200 ± 0.00200 | 0.51 |  | now, knee |"),
+            text.contains("| 8 | 2.00 |  | 0.0200 (0.0180 to 0.0220) | 0.51 |  | now, knee |"),
             "{text}"
         );
         assert!(text.contains("`--size 640x480`") && text.contains("After **8**"));

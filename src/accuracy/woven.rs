@@ -16,8 +16,8 @@ use crate::synthesis::{
 };
 
 /// A design whose exemplars are there: its synthesis can be measured again and again.
-pub struct Woven<'d> {
-    design: &'d Design,
+pub struct Woven {
+    design: Arc<Design>,
     catalogue: Catalogue,
     classes: YarnClasses,
     heights: Vec<EdgeHeights>,
@@ -47,21 +47,21 @@ pub struct Synthesised {
     pub repeated: f64,
 }
 
-impl<'d> Woven<'d> {
+impl Woven {
     /// Reads or builds the exemplars of a design.
     ///
     /// # Errors
     /// When the cloth cannot be made or the job is cancelled.
     pub fn new(
-        design: &'d Design,
+        design: Arc<Design>,
         settings: ClothSettings,
         store: &ExemplarStore,
         job: &Job,
     ) -> Result<Self, AccuracyError> {
         let catalogue = Catalogue::standard();
-        let (_, needed) = ClothVolume::assign(design, &catalogue, &settings, job)?;
+        let (_, needed) = ClothVolume::assign(&design, &catalogue, &settings, job)?;
         let begun = Instant::now();
-        let classes = YarnClasses::new(design);
+        let classes = YarnClasses::new(&design);
         let grid = ClothVolume::grid_for(&catalogue, &classes, &settings)?;
         let sets = (classes.pairs.iter())
             .map(|pair| store.get(&catalogue, pair, grid, &needed, job))
@@ -94,7 +94,7 @@ impl<'d> Woven<'d> {
             ..self.settings
         };
         let begun = Clock::now();
-        let (blocks, _) = ClothVolume::assign(self.design, &self.catalogue, &settings, job)?;
+        let (blocks, _) = ClothVolume::assign(&self.design, &self.catalogue, &settings, job)?;
         let assignment = begun.took();
         let begun = Clock::now();
         let edge_fix = EdgeFix::new(&self.heights, &self.catalogue, synthesis.rank, job)?;
@@ -111,7 +111,7 @@ impl<'d> Woven<'d> {
             assignment: &blocks,
             randomisation,
         };
-        let (design, classes) = (self.design, &self.classes);
+        let (design, classes) = (&self.design, &self.classes);
         let set_at =
             |end, pick| classes.set(design.warp_yarn(end, pick), design.weft_yarn(end, pick));
         let seams = placement.seam_rms(&edge_fix, &self.heights, set_at, job)?;
@@ -131,7 +131,7 @@ impl<'d> Woven<'d> {
     }
 }
 
-/// See [`Synthesised::repeated`]: over as many crossings as tell it within a hundredth.
+/// See [`Synthesised::repeated`]: over a square of crossings.
 fn repeated(placement: &Placement<'_>, assignment: &Assignment) -> f64 {
     const LOOKED_AT: i64 = 128;
     let (ends, picks) = (i64::from(assignment.ends()), i64::from(assignment.picks()));

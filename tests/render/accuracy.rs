@@ -94,6 +94,9 @@ fn curves_fall_where_theory_says_so() {
         let ratio = noise(few) / noise(many) / times.sqrt();
         assert!((ratio - 1.0).abs() < 0.15, "{few} to {many}: {ratio}");
     }
+    for value in ["4", "16", "64"] {
+        assert!(point(&accuracy, "spp", value).measured, "{value}");
+    }
     assert!(!point(&accuracy, "spp", "4096").measured);
     // The method that finds the optimum is no worse than the others.
     let method = &curve(&accuracy, "method").settings;

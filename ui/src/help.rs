@@ -49,8 +49,10 @@ after, max}, seam_rms{before, after}.";
 pub const ACCURACY: &str = "\
 Writes accuracy.md to read, accuracy.json, and of everything that is measured a plot (NAME.png,
 NAME.svg) and the pictures of its settings side by side (NAME-pictures.png). Each setting's time
-is that of the whole picture that the options ask for; its error is measured on a piece of it.
-Where it is interrupted, the same command goes on from what is there.
+is that of the whole picture that the options ask for, once its cloth is made, or of the synthesis
+where that is what is set; its error is measured on a piece of the picture. Where it is
+interrupted, the same command goes on from what is there; what was measured of something else is
+not written over.
 
 With --json: dials[]{name, unit, reference, current, knee, settings[]{value, seconds,
 seconds_interval, processor_seconds, error, error_interval, delta_e, ssim, measured}}, design,

@@ -480,10 +480,14 @@ fn accuracy_is_measured_into_a_folder_and_gone_on_from() {
         said.contains("accuracy.md") && said.contains("method: "),
         "{said}"
     );
-    // Another picture begins anew, and says so.
-    let anew = measured("method", &["--mm", "3"]);
-    let warned = String::from_utf8_lossy(&anew.stderr);
-    assert!(warned.contains("replaced"), "{warned}");
+    // What was measured of another picture is not written over.
+    let kept = std::fs::read(at("accuracy.json")).expect("a file");
+    let line = refused(&measured("method", &["--mm", "3"]), 1);
+    assert!(
+        line.contains("accuracy.json") && line.contains("another folder"),
+        "{line}"
+    );
+    assert_eq!(std::fs::read(at("accuracy.json")).expect("a file"), kept);
     for (dials, code, said) in [("glow", 2, "glow"), ("backing-layers", 1, "backing-layers")] {
         let line = refused(&measured(dials, &["--backing", "white"]), code);
         assert!(line.contains(said), "{line}");

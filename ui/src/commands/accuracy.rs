@@ -43,13 +43,24 @@ pub fn run(args: &AccuracyArgs) -> anyhow::Result<()> {
         axes: args.dials.clone(),
         before: before.clone(),
     };
+    // Half an hour of measuring is not written over by the way.
+    if let Some(before) = &before
+        && before.key != measuring.key(&opened.design)
+    {
+        anyhow::bail!(
+            "{}: what was measured there is of {}, another picture, machine or extent: choose \
+             another folder, or remove it",
+            out::shown(&folder.join("accuracy.json")),
+            before.design
+        );
+    }
     let progress = Progress::new();
     let job = progress.job();
     let interrupt = Interrupt::watch(&job);
     let store = ExemplarStore::user();
-    let mut known = None;
+    let mut known = before.as_ref().map_or(0, |before| before.dials.len());
     let mut write = |measured: &Accuracy, crops: &_| {
-        known = Some(measured.dials.len());
+        known = measured.dials.len();
         accuracy::write(folder, measured, crops)
     };
     let measured = accuracy::measure(&opened.design, &measuring, &store, &job, &mut write);
@@ -57,16 +68,10 @@ pub fn run(args: &AccuracyArgs) -> anyhow::Result<()> {
     let measured = match measured {
         Err(AccuracyError::Cancelled(_)) if interrupt.happened() => anyhow::bail!(
             "interrupted: {} dials are measured so far: the same command goes on from them",
-            known.unwrap_or(0)
+            known
         ),
         measured => measured?,
     };
-    if before.is_some_and(|before| before.key != measured.key) {
-        out::note(&format!(
-            "warning: {}: what was measured there was of another picture and is replaced",
-            out::shown(&folder.join("accuracy.json"))
-        ));
-    }
     match args.json {
         true => out::say_json(&serde_json::to_value(&measured)?),
         false => out::say(&lines(&measured, folder)),

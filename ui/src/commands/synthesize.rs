@@ -1,5 +1,7 @@
 //! `pickglass synthesize`: assignment and edge fixing, measured, with no picture.
 
+use std::sync::Arc;
+
 use pickglass::accuracy::Woven;
 use pickglass::cloth::ClothSettings;
 use pickglass::exemplar::ExemplarStore;
@@ -57,7 +59,12 @@ fn measure(opened: &Opened, synthesis: SynthesisSettings, job: &Job) -> anyhow::
         synthesis,
         ..ClothSettings::default()
     };
-    let woven = Woven::new(&opened.design, cloth, &ExemplarStore::user(), job)?;
+    let woven = Woven::new(
+        Arc::clone(&opened.design),
+        cloth,
+        &ExemplarStore::user(),
+        job,
+    )?;
     let made = woven.synthesise(synthesis, job)?;
     Ok(Report {
         exemplar_seconds: woven.exemplar_seconds,

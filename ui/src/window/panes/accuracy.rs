@@ -11,6 +11,7 @@ use pickglass::accuracy::{
     self, Accuracy, AccuracyError, Asked, Axis, Curve, Effort, Measuring, Point, number,
 };
 use pickglass::design::Design;
+use pickglass::edit::Document;
 use pickglass::engine::{self, StillRequest};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::film::Picture;
@@ -55,14 +56,17 @@ pub struct AccuracyPane {
     failed: Option<String>,
     /// The dial whose curve is shown.
     dial: Option<String>,
-    /// A setting's picture, by dial and place.
-    texture: Option<((String, usize), TextureHandle)>,
+    /// Another number for each measurement, and the document's state that it is of.
+    measurement: u64,
+    revision: u64,
+    /// A setting's picture, by measurement, dial and place.
+    texture: Option<((u64, String, usize), TextureHandle)>,
 }
 
 impl PaneView for AccuracyPane {
     fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
         self.poll();
-        self.head_ui(ui, shown.document.design());
+        self.head_ui(ui, shown.document);
         let quiet = Palette::current(ui).quiet;
         let accuracy = self.found().accuracy.clone();
         let Some(accuracy) = accuracy.filter(|accuracy| !accuracy.dials.is_empty()) else {
@@ -71,8 +75,12 @@ impl PaneView for AccuracyPane {
             ui.label(RichText::new(told).color(quiet));
             return;
         };
-        if self.is_of_another_picture(&accuracy) {
-            let told = "This was measured of another view, or with other settings.";
+        let changed = shown.document.revision() != self.revision;
+        if changed || self.is_of_another_picture(&accuracy) {
+            let told = match changed {
+                true => "This was measured before the design was changed.",
+                false => "This was measured of another view, or with other settings.",
+            };
             ui.label(RichText::new(told).color(Palette::current(ui).warning));
         }
         let known = |name: &String| accuracy.dials.iter().any(|curve| curve.name == *name);
@@ -152,7 +160,7 @@ impl AccuracyPane {
     }
 
     /// What is being done, and what can be.
-    fn head_ui(&mut self, ui: &mut Ui, design: &Arc<Design>) {
+    fn head_ui(&mut self, ui: &mut Ui, document: &Document) {
         ui.horizontal_wrapped(|ui| {
             if let Some(running) = &self.running {
                 ui.label(running.progress());
@@ -166,7 +174,8 @@ impl AccuracyPane {
             if button.clicked()
                 && let Some(asked) = self.asked.clone()
             {
-                self.start(ui.ctx(), design, asked);
+                self.revision = document.revision();
+                self.start(ui.ctx(), document.design(), asked);
             }
             for effort in [Effort::Quick, Effort::Default, Effort::Full] {
                 let about = effort.get_documentation().unwrap_or_default();
@@ -193,7 +202,8 @@ impl AccuracyPane {
         let running = Running::start(ctx, "accuracy", move |job: &Job, _| {
             let keep = |accuracy: &Accuracy, crops: &Vec<Picture>| {
                 let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-                if let Some(curve) = accuracy.dials.last() {
+                // Dials together have no pictures.
+                if let (Some(curve), false) = (accuracy.dials.last(), crops.is_empty()) {
                     found.pictures.retain(|(name, _)| *name != curve.name);
                     found.pictures.push((curve.name.clone(), crops.clone()));
                 }
@@ -207,6 +217,7 @@ impl AccuracyPane {
             }
         });
         self.failed = None;
+        self.measurement += 1;
         match running {
             Ok(running) => self.running = Some(running),
             Err(error) => self.failed = Some(format!("no thread to measure on: {error}")),
@@ -304,7 +315,7 @@ impl AccuracyPane {
 
     /// What a setting looks like.
     fn picture_ui(&mut self, ui: &mut Ui, curve: &Curve, at: usize) {
-        let key = (curve.name.clone(), at);
+        let key = (self.measurement, curve.name.clone(), at);
         if self.texture.as_ref().is_none_or(|(known, _)| *known != key) {
             let found = self.found();
             let pictures = found.pictures.iter().find(|(name, _)| *name == curve.name);
