@@ -131,11 +131,8 @@ pub fn measure(
     job: &Job,
     on_curve: &mut dyn FnMut(&Accuracy, &Crops) -> Result<(), AccuracyError>,
 ) -> Result<Accuracy, AccuracyError> {
+    measuring.check()?;
     let asked = with_paths(&measuring.asked);
-    let idle = measuring.axes.iter().find(|axis| !axis.applies(&asked));
-    if let Some(axis) = idle {
-        return Err(AccuracyError::Idle(axis.name()));
-    }
     let key = measuring.key(design);
     let before = (measuring.before.clone()).filter(|before| before.key == key);
     let piece = piece(design, &asked.request);
@@ -210,6 +207,15 @@ pub fn options(asked: &Asked) -> String {
 }
 
 impl Measuring {
+    /// Refuses what changes nothing of the picture.
+    ///
+    /// # Errors
+    /// [`AccuracyError::Idle`] of the first such dial.
+    pub fn check(&self) -> Result<(), AccuracyError> {
+        let idle = self.axes.iter().find(|axis| !axis.applies(&self.asked));
+        idle.map_or(Ok(()), |axis| Err(AccuracyError::Idle(axis.name())))
+    }
+
     /// What measurements have to have in common to stand in one file: program and machine, the
     /// design, the picture with its light, and how much is measured.
     pub fn key(&self, design: &Design) -> String {

@@ -43,6 +43,7 @@ pub fn run(args: &AccuracyArgs) -> anyhow::Result<()> {
         axes: args.dials.clone(),
         before: before.clone(),
     };
+    measuring.check()?;
     // Half an hour of measuring is not written over by the way.
     if let Some(before) = &before
         && before.key != measuring.key(&opened.design)
