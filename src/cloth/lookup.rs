@@ -5,7 +5,6 @@ use std::cell::Cell;
 use glam::Vec3;
 
 use super::build::ClothVolume;
-use super::window::StackShift;
 use crate::exemplar::{BrickVolume, bits_of, cell_of};
 use crate::render::Voxel;
 use crate::synthesis::{BlockRef, Face, Neighbourhood};
@@ -21,7 +20,7 @@ pub(super) struct Crossing<'c> {
     pub per_mm: [f32; 2],
     /// Found when first needed: most crossings are only passed over.
     around: Cell<Option<Neighbourhood>>,
-    /// Where the window keeps its shifts.
+    /// Which of the window's shifts are its own.
     kept: Option<usize>,
     /// The voxels it copies, found when first needed.
     source: Cell<Option<Source<'c>>>,
@@ -39,6 +38,28 @@ struct Source<'c> {
     repeat: [i32; 2],
 }
 
+/// The seams of a crossing, as they shift it at one height.
+struct Seams {
+    around: Neighbourhood,
+    kept: Option<usize>,
+    /// Weight of the front's field.
+    front: f32,
+}
+
+impl Seams {
+    /// What the fields of the two faces say, blended where both have a weight.
+    #[inline]
+    fn blend<T>(&self, of: impl Fn(Face) -> T, blend: impl Fn(f32, T, T) -> T) -> T {
+        if self.front >= 1.0 {
+            of(Face::Front)
+        } else if self.front <= 0.0 {
+            of(Face::Back)
+        } else {
+            blend(self.front, of(Face::Front), of(Face::Back))
+        }
+    }
+}
+
 impl ClothVolume {
     /// The crossing at (end, pick); `None` where there is no cloth.
     #[inline]
@@ -52,7 +73,7 @@ impl ClothVolume {
                 corner: [along_x.start, along_y.start],
                 per_mm: [along_x.per_mm, along_y.per_mm],
                 around: Cell::new(Some(around)),
-                kept: Some(kept),
+                kept,
                 source: Cell::new(None),
             });
         }
@@ -163,10 +184,13 @@ impl ClothVolume {
                 return Voxel::EMPTY;
             };
             if around.sides != [None; 4] {
-                let front = front_weight(z / depth);
-                let stack = self.stack_shift(&around, crossing.kept, front, [x, y]);
-                height -= stack.shift;
-                seams = Some(stack.rise);
+                let found = Seams {
+                    around,
+                    kept: crossing.kept,
+                    front: front_weight(z / depth),
+                };
+                height -= self.shift(&found, [x, y]);
+                seams = Some(found);
             }
         }
         if !(height >= 0.0 && height < depth) {
@@ -215,10 +239,10 @@ impl ClothVolume {
             let lobes = source.volume.lobes(place[0], place[1], place[2]);
             direction = lobes.direction(direction, bits_of(chance), matter.spread);
         }
-        if let Some(rise) = seams
+        if let Some(seams) = &seams
             && self.settings.shear
         {
-            direction = self.sheared(rise, direction);
+            direction = self.sheared(self.rise(seams, [x, y]), direction);
         }
         Voxel {
             sigma,
@@ -228,72 +252,52 @@ impl ClothVolume {
         }
     }
 
-    /// Shift of a stack, blended between the fields of the two faces; `front` is the
-    /// weight of the front's.
+    /// Shift of a stack, voxels upwards, blended between the fields of the two faces.
     #[inline]
-    fn stack_shift(
-        &self,
-        around: &Neighbourhood,
-        kept: Option<usize>,
-        front: f32,
-        stack: [usize; 2],
-    ) -> StackShift {
-        let field = |face| self.field(around, kept, face, stack);
-        if front >= 1.0 {
-            field(Face::Front)
-        } else if front <= 0.0 {
-            field(Face::Back)
-        } else {
-            let (upper, lower) = (field(Face::Front), field(Face::Back));
-            let blend = |upper: f32, lower: f32| front * upper + (1.0 - front) * lower;
-            StackShift {
-                shift: blend(upper.shift, lower.shift),
-                rise: [0, 1].map(|axis| blend(upper.rise[axis], lower.rise[axis])),
-            }
-        }
+    fn shift(&self, seams: &Seams, [x, y]: [usize; 2]) -> f32 {
+        let of = |face| self.field(seams, face, x, y);
+        seams.blend(of, |front, upper, lower| {
+            front * upper + (1.0 - front) * lower
+        })
     }
 
+    /// How much the shift rises from stack to stack in x and y, likewise.
     #[inline]
-    fn field(
-        &self,
-        around: &Neighbourhood,
-        kept: Option<usize>,
-        face: Face,
-        [x, y]: [usize; 2],
-    ) -> StackShift {
-        match kept.and_then(|place| self.window.shifts(place, face)) {
+    fn rise(&self, seams: &Seams, [x, y]: [usize; 2]) -> [f32; 2] {
+        let (bx, by) = self.edge_fix.block_size();
+        // Half-way between the neighbours on both sides; at the rims there is one.
+        let [left, right] = [x.saturating_sub(1), (x + 1).min(bx - 1)];
+        let [below, above] = [y.saturating_sub(1), (y + 1).min(by - 1)];
+        let of = |face: Face| {
+            let rise = |from: [usize; 2], to: [usize; 2], steps: usize| {
+                let [from, to] = [from, to].map(|[x, y]| self.field(seams, face, x, y));
+                (to - from) / steps.max(1) as f32
+            };
+            [
+                rise([left, y], [right, y], right - left),
+                rise([x, below], [x, above], above - below),
+            ]
+        };
+        seams.blend(of, |front, upper, lower| {
+            [0, 1].map(|axis| front * upper[axis] + (1.0 - front) * lower[axis])
+        })
+    }
+
+    /// Shift of a stack under one face's field.
+    #[inline]
+    fn field(&self, seams: &Seams, face: Face, x: usize, y: usize) -> f32 {
+        match seams.kept.and_then(|kind| self.window.shifts(kind, face)) {
             Some(kept) => {
                 let width = self.edge_fix.block_size().0;
-                kept.get_or_init(|| self.all_shifts(around, face))[y * width + x]
+                kept.get_or_init(|| self.all_shifts(&seams.around, face))[y * width + x]
             }
-            None => self.with_rise(|x, y| self.edge_fix.shift_at(around, face, x, y), x, y),
+            None => self.edge_fix.shift_at(&seams.around, face, x, y),
         }
     }
 
     #[cold]
-    fn all_shifts(&self, around: &Neighbourhood, face: Face) -> Box<[StackShift]> {
-        let (bx, by) = self.edge_fix.block_size();
-        let shifts = self.edge_fix.shifts(around, face);
-        let known = |x: usize, y: usize| shifts[y * bx + x];
-        (0..bx * by)
-            .map(|i| self.with_rise(known, i % bx, i / bx))
-            .collect()
-    }
-
-    #[inline]
-    fn with_rise(&self, shift_at: impl Fn(usize, usize) -> f32, x: usize, y: usize) -> StackShift {
-        let (bx, by) = self.edge_fix.block_size();
-        let here = shift_at(x, y);
-        // Half-way between the neighbours on both sides; at the rims there is one.
-        let [left, right] = [x.saturating_sub(1), (x + 1).min(bx - 1)];
-        let [below, above] = [y.saturating_sub(1), (y + 1).min(by - 1)];
-        let rise = |from: f32, to: f32, steps: usize| (to - from) / steps.max(1) as f32;
-        let across = rise(shift_at(left, y), shift_at(right, y), right - left);
-        let along = rise(shift_at(x, below), shift_at(x, above), above - below);
-        StackShift {
-            shift: here,
-            rise: [across, along],
-        }
+    fn all_shifts(&self, around: &Neighbourhood, face: Face) -> Box<[f32]> {
+        self.edge_fix.shifts(around, face).into()
     }
 
     /// A direction sheared by the slope of the shift.

@@ -3,6 +3,8 @@
 //! Nothing here decides anything: it is what [`ClothVolume`] would find out again and
 //! again, kept for a rectangle of crossings. Outside it the same is found out on the spot.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -28,21 +30,16 @@ pub(super) struct Thread {
     pub per_mm: f32,
 }
 
-/// How far a stack of voxels is shifted, and how much further the stacks beside it are.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct StackShift {
-    /// Shift, voxels upwards.
-    pub shift: f32,
-    /// Rise towards the next stack in x and in y (at the far border: from the one before).
-    pub rise: [f32; 2],
-}
+/// The shifts of all stacks of a crossing under one face's field, voxels upwards, x fastest,
+/// once worked out.
+pub(super) type KeptShifts = OnceLock<Box<[f32]>>;
 
-/// The shifts of all stacks of a crossing under one face's field, once worked out.
-pub(super) type KeptShifts = OnceLock<Box<[StackShift]>>;
+/// A crossing made ready: its threads, what stands around it (`None`: no cloth) and where the
+/// window keeps its shifts, where it does.
+pub(super) type Ready = (Thread, Thread, Option<Neighbourhood>, Option<usize>);
 
-/// A crossing made ready: its threads, what stands around it (`None`: no cloth) and its
-/// place in the window.
-pub(super) type Ready = (Thread, Thread, Option<Neighbourhood>, usize);
+/// Of a crossing whose shifts are not kept: it has no seam, or there were too many.
+const NOT_KEPT: u32 = u32::MAX;
 
 /// A rectangle of crossings made ready.
 #[derive(Default)]
@@ -53,8 +50,11 @@ pub(super) struct Window {
     height: usize,
     /// Row by row; `None` where there is no cloth.
     cells: Vec<Option<Neighbourhood>>,
-    /// Shifts of the stacks of each crossing, front and back, worked out when first
-    /// needed; none when there are too many crossings.
+    /// Which shifts each of them has, or [`NOT_KEPT`]: a cloth repeats its blocks, and equal
+    /// neighbourhoods are shifted alike.
+    kept: Vec<u32>,
+    /// Shifts of the stacks of each kind of neighbourhood, front and back, worked out when
+    /// first needed.
     shifts: Vec<[KeptShifts; 2]>,
     ends: Vec<Thread>,
     picks: Vec<Thread>,
@@ -80,7 +80,9 @@ impl Window {
     pub fn crossing(&self, end: i64, pick: i64) -> Option<Ready> {
         let (x, y) = self.index(end, pick)?;
         let place = y * self.width + x;
-        Some((self.ends[x], self.picks[y], self.cells[place], place))
+        let kept = self.kept[place];
+        let kept = (kept != NOT_KEPT).then_some(kept as usize);
+        Some((self.ends[x], self.picks[y], self.cells[place], kept))
     }
 
     /// The block shown at a crossing that was made ready.
@@ -112,6 +114,25 @@ impl Window {
             .get(pick.wrapping_sub(self.pick - MARGIN) as usize)
             .copied()
     }
+}
+
+/// Which kind of neighbourhood each crossing has, of those that have a seam, and how many kinds
+/// there are: no more than `most`, the others are [`NOT_KEPT`].
+fn kinds(cells: &[Option<Neighbourhood>], most: usize) -> (Vec<u32>, usize) {
+    let mut known: HashMap<Neighbourhood, u32> = HashMap::new();
+    let kept = cells.iter().map(|around| {
+        let Some(around) = around.filter(|around| around.sides != [None; 4]) else {
+            return NOT_KEPT;
+        };
+        let next = known.len();
+        match known.entry(around) {
+            Entry::Occupied(kind) => *kind.get(),
+            Entry::Vacant(_) if next >= most => NOT_KEPT,
+            Entry::Vacant(new) => *new.insert(next as u32),
+        }
+    });
+    let kept = kept.collect();
+    (kept, known.len())
 }
 
 impl ClothVolume {
@@ -151,7 +172,7 @@ impl ClothVolume {
                 .map(thread)
                 .collect::<Vec<_>>()
         };
-        let cells = (0..width * height)
+        let cells: Vec<_> = (0..width * height)
             .into_par_iter()
             .map(|index| {
                 let (x, y) = ((index % width) as i64, (index / width) as i64);
@@ -167,16 +188,16 @@ impl ClothVolume {
                     Vec::new()
                 }
             };
-        let bytes = 2 * bx * by * size_of::<StackShift>();
-        let all_kept = width * height * bytes <= most_shifts;
-        let kept = if all_kept { width * height } else { 0 };
+        let bytes = 2 * bx * by * size_of::<f32>();
+        let (kept, kinds) = kinds(&cells, most_shifts / bytes.max(1));
         Window {
             end,
             pick,
             width,
             height,
             cells,
-            shifts: (0..kept).map(|_| Default::default()).collect(),
+            kept,
+            shifts: (0..kinds).map(|_| Default::default()).collect(),
             ends: threads(&self.ends, end, width, bx),
             picks: threads(&self.picks, pick, height, by),
             warp: yarns(&self.maps.warp, &|end| self.warp_yarn(end, 0), end, width),

@@ -25,7 +25,7 @@ pub struct BlockRef {
 }
 
 /// A block and what stands on its four sides; `None` where the cloth ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Neighbourhood {
     /// The block in the middle.
     pub centre: BlockRef,
