@@ -77,6 +77,7 @@
 //! | [`presets`] | designs inside the program | `design` `formats` |
 //! | [`plan`] | what a picture simulates, and how closely | `limits` `synthesis` `exemplar` `render` `cloth` `formats` |
 //! | [`engine`] | draws a design: the table of engines, stills, sheets | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
+//! | [`needs`] | which effects a picture calls for | `random` `job` `design` `exemplar` `scene` `film` `render` `cloth` `plan` `engine` |
 //! | [`accuracy`] | what each dial's settings cost and how wrong they are, measured | `random` `job` `atomic` `design` `synthesis` `exemplar` `scene` `film` `cloth` `formats` `plan` `engine` |
 
 pub mod accuracy;
@@ -92,6 +93,7 @@ pub mod hash;
 pub mod job;
 pub mod limits;
 pub mod memory;
+pub mod needs;
 pub mod plan;
 pub mod posterise;
 pub mod presets;

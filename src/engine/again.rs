@@ -2,7 +2,7 @@
 //! for, in the program's own grammar.
 
 use super::request::{LightChoice, StillReport, StillRequest};
-use crate::plan::{DIALS, EffectChoice, Settings};
+use crate::plan::{DIALS, EffectBase, EffectChoice, Settings};
 use crate::text::shell_word;
 
 /// What a picture's file says of how it is made again.
@@ -91,14 +91,20 @@ fn effects(choice: &EffectChoice) -> String {
         let sign = if *on { '+' } else { '-' };
         format!(",{sign}{effect}")
     });
-    changes.fold(choice.base.to_string(), |words, word| words + &word)
+    // What the scene does not call for is said by name: it need not be found out again.
+    let is_named = |effect| choice.changes.iter().any(|(named, _)| *named == effect);
+    let is_auto = choice.base == EffectBase::Auto;
+    let found = (choice.found.iter())
+        .filter(|found| is_auto && !found.on && !is_named(found.effect))
+        .map(|found| format!(",-{}", found.effect));
+    (changes.chain(found)).fold(choice.base.to_string(), |words, word| words + &word)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::engine::Heading;
-    use crate::plan::{Effect, EffectBase};
+    use crate::plan::Effect;
     use crate::render::Backing;
 
     #[test]
@@ -118,6 +124,7 @@ mod tests {
             effects: EffectChoice {
                 base: EffectBase::None,
                 changes: vec![(Effect::Sky, true), (Effect::EdgeFixing, false)],
+                ..EffectChoice::default()
             },
             colourway: Some("it's".to_owned()),
             ..StillRequest::default()

@@ -11,6 +11,7 @@ use super::shot::Shot;
 use crate::design::Design;
 use crate::film::Film;
 use crate::job::Job;
+use crate::render::BlocksSeen;
 
 /// Draws one subject: the cloth of a design, or voxels that were read.
 pub trait Engine: Send + Sync {
@@ -27,6 +28,21 @@ pub trait Engine: Send + Sync {
         job: &Job,
         on_pass: &mut dyn FnMut(&Pass<'_>),
     ) -> Result<Exposure, StillError>;
+
+    /// Looks closely at some blocks of the picture, each given by its upper left corner, with
+    /// `spp` paths through every pixel; `None` where it follows no paths.
+    ///
+    /// # Errors
+    /// When the request is not usable or the job is cancelled.
+    fn look_at(
+        &self,
+        _shot: &Shot<'_>,
+        _corners: &[[u32; 2]],
+        _spp: u32,
+        _job: &Job,
+    ) -> Result<Option<BlocksSeen>, StillError> {
+        Ok(None)
+    }
 
     /// Draws `design`, the same in another colourway, from now on. False, and nothing changed,
     /// where that takes as much as making the engine anew.

@@ -25,11 +25,19 @@ pub(super) fn bounded(request: &StillRequest, job: &Job) -> Job {
     let Some(deadline) = job.deadline() else {
         return job;
     };
-    let tone = Tone {
-        exposure: request.exposure_ev,
-    };
-    let kept = time(request, tone);
+    let kept = time(request, tone(request));
     job.with_deadline(deadline.checked_sub(kept).unwrap_or(deadline))
+}
+
+/// Seconds that a request's picture takes once it is traced, at most.
+pub fn finishing_seconds(request: &StillRequest) -> f64 {
+    time(request, tone(request)).as_secs_f64()
+}
+
+fn tone(request: &StillRequest) -> Tone {
+    Tone {
+        exposure: request.exposure_ev,
+    }
 }
 
 /// The time that a request's picture takes once it is traced: measured on a strip of noise,

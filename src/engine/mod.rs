@@ -29,6 +29,7 @@ mod tracer;
 pub use again::options;
 pub use carried::{Carried, Sighted};
 pub use exposure::{Engine, Exposure, Pass};
+pub use finishing::finishing_seconds;
 pub use first_sight::{FirstSight, SightTables};
 pub use grid::{light_warnings, render_grid, scene_files};
 pub use prepare::{check_view, coloured, covers, follow, prepare, prepare_woven};
@@ -37,7 +38,7 @@ pub use request::{Heading, LightChoice, StillReport, StillRequest, Stop};
 pub use sheet::{ALL_COLOURWAYS, AS_DESIGNED, Sheet, SheetPlace, render_sheet};
 pub use shot::{Shot, place_on, usual_width_mm};
 pub use standing::Standing;
-pub use still::{Still, draw, render, render_still};
+pub use still::{Settle, Still, draw, render, render_settled, render_still};
 pub use table::{RENDERERS, reference, renderer};
 
 use std::path::{Path, PathBuf};

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use glam::Vec3;
 
@@ -64,12 +65,54 @@ pub fn render_still(
     job: &Job,
     on_pass: &mut dyn FnMut(&Pass<'_>),
 ) -> Result<Still, StillError> {
+    render_settled(
+        design,
+        request,
+        renderer,
+        job,
+        &mut |_, _| Ok(None),
+        on_pass,
+    )
+}
+
+/// Settles what is left open of a picture once its engine is ready, by looking at it: what is
+/// asked for instead, which needs no other engine; `None` where that stays as it is.
+pub type Settle<'s> =
+    dyn FnMut(&dyn Engine, &Arc<Design>) -> Result<Option<StillRequest>, StillError> + 's;
+
+/// As [`render_still`]; `settle` has a say before anything is traced.
+///
+/// # Errors
+/// As [`render_still`], and when `settle` fails.
+pub fn render_settled(
+    design: &Arc<Design>,
+    request: &StillRequest,
+    renderer: &Renderer,
+    job: &Job,
+    settle: &mut Settle<'_>,
+    on_pass: &mut dyn FnMut(&Pass<'_>),
+) -> Result<Still, StillError> {
     renderer.check(Subject::Cloth)?;
     // What is wrong with the light is said before anything takes long.
-    let shot = Shot::new(request, renderer.plan(request, Subject::Cloth)?)?;
+    Shot::new(request, renderer.plan(request, Subject::Cloth)?)?;
     let job = &finishing::bounded(request, job);
     let engine = renderer.engine(design, request, &ExemplarStore::user(), job)?;
-    draw(&*engine, &coloured(design, request)?, &shot, job, on_pass)
+    let design = coloured(design, request)?;
+    let begun = Instant::now();
+    let settled = settle(&*engine, &design)?;
+    let looked = settled.is_some().then(|| begun.elapsed().as_secs_f64());
+    let request = settled.as_ref().unwrap_or(request);
+    let shot = Shot::new(request, renderer.plan(request, Subject::Cloth)?)?;
+    let mut still = draw(&*engine, &design, &shot, job, on_pass)?;
+    if let Some(seconds) = looked {
+        let report = &mut still.report;
+        let before = report.seconds.len().saturating_sub(1);
+        report
+            .seconds
+            .insert(before, ("settling".to_owned(), seconds));
+        report.total_seconds += seconds;
+    }
+    Ok(still)
 }
 
 /// The still of an exposure.

@@ -8,12 +8,12 @@ use super::prepare::prepare;
 use super::renderer::{Making, Renderer};
 use super::request::{StillReport, StillRequest};
 use super::shot::{Shot, camera, camera_over, in_view};
-use crate::cloth::{PreparedCloth, REACH_MM};
+use crate::cloth::{ClothVolume, HairLayer, PreparedCloth, REACH_MM};
 use crate::design::Design;
 use crate::film::Film;
 use crate::job::Job;
 use crate::plan::Effect;
-use crate::render::{self, Both, Medium, Scatterer};
+use crate::render::{self, BlocksSeen, Both, Medium, Scatterer, look_at_blocks};
 use crate::scene::{Bounds, Camera};
 use crate::volume::DenseGrid;
 
@@ -51,13 +51,8 @@ impl Engine for PreparedCloth {
         job: &Job,
         on_pass: &mut dyn FnMut(&Pass<'_>),
     ) -> Result<Exposure, StillError> {
-        let camera = camera(self.design(), shot.request)?;
-        let (x, y) = in_view(&camera, shot.request);
-        let cloth = self.cloth().clone().with_window(x, y);
-        let hairs = match shot.plan.on(Effect::Hairs) {
-            true => self.hair_layer(&cloth),
-            false => None,
-        };
+        let (camera, cloth) = before(self, shot)?;
+        let hairs = hairs(self, &cloth, shot);
         let stages = self.seconds().to_vec();
         let mut exposure = match &hairs {
             Some(hairs) => trace(&Both(&cloth, hairs), &camera, shot, stages, job, on_pass)?,
@@ -71,9 +66,46 @@ impl Engine for PreparedCloth {
         Ok(exposure)
     }
 
+    fn look_at(
+        &self,
+        shot: &Shot<'_>,
+        corners: &[[u32; 2]],
+        spp: u32,
+        job: &Job,
+    ) -> Result<Option<BlocksSeen>, StillError> {
+        let (camera, cloth) = before(self, shot)?;
+        let (lights, settings, blocks) = (&shot.lights, &shot.plan.render, (corners, spp));
+        let seen = match &hairs(self, &cloth, shot) {
+            Some(hairs) => {
+                let both = Both(&cloth, hairs);
+                look_at_blocks(&both, &camera, lights, settings, blocks, job)?
+            }
+            None => look_at_blocks(&cloth, &camera, lights, settings, blocks, job)?,
+        };
+        Ok(Some(seen))
+    }
+
     fn recolour(&mut self, design: &Arc<Design>) -> bool {
         Self::recolour(self, design)
     }
+}
+
+/// The camera of a shot, and the cloth before it.
+fn before(prepared: &PreparedCloth, shot: &Shot<'_>) -> Result<(Camera, ClothVolume), StillError> {
+    let camera = camera(prepared.design(), shot.request)?;
+    let (x, y) = in_view(&camera, shot.request);
+    let cloth = prepared.cloth().clone().with_window(x, y);
+    Ok((camera, cloth))
+}
+
+/// The hairs over a cloth, where there are any and the shot has them.
+fn hairs<'c>(
+    prepared: &PreparedCloth,
+    cloth: &'c ClothVolume,
+    shot: &Shot<'_>,
+) -> Option<HairLayer<'c>> {
+    let on = shot.plan.on(Effect::Hairs);
+    on.then(|| prepared.hair_layer(cloth)).flatten()
 }
 
 /// Voxels that were read.

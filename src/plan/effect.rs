@@ -1,5 +1,7 @@
 //! Effects: what a picture may leave out, and who decided that it does.
 
+use std::borrow::Cow;
+
 use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 /// What is looked at.
@@ -110,6 +112,19 @@ pub struct EffectChoice {
     pub base: EffectBase,
     /// Effects switched on or off; the last word on each counts.
     pub changes: Vec<(Effect, bool)>,
+    /// What was found out about the scene, which [`EffectBase::Auto`] follows.
+    pub found: Vec<Found>,
+}
+
+/// What was found out about one effect of a scene (see [`crate::needs`]).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// The effect.
+    pub effect: Effect,
+    /// Whether the scene calls for it.
+    pub on: bool,
+    /// Why, in a designer's words.
+    pub why: String,
 }
 
 /// Who decided whether an effect is simulated.
@@ -125,14 +140,14 @@ pub enum Decider {
 }
 
 /// Whether one effect is simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Planned {
     /// The effect.
     pub effect: Effect,
     /// Whether it is.
     pub on: bool,
     /// Why.
-    pub why: &'static str,
+    pub why: Cow<'static, str>,
     /// Who decided.
     pub by: Decider,
 }
@@ -148,14 +163,18 @@ impl EffectChoice {
 
     fn planned(&self, effect: Effect, subject: Subject) -> Planned {
         let named = (self.changes.iter().rev()).find(|(named, _)| *named == effect);
-        let (on, why, by) = match (named, self.base) {
-            (Some((_, true)), _) => (true, "asked for by name", Decider::Person),
-            (Some((_, false)), _) => (false, "left out by name", Decider::Person),
-            (None, EffectBase::All) => (true, "all were asked for", Decider::Person),
-            (None, EffectBase::None) => (false, "none was asked for", Decider::Person),
-            (None, EffectBase::Auto) => {
+        let found = self.found.iter().find(|found| found.effect == effect);
+        let (on, why, by) = match (named, self.base, found) {
+            (Some((_, true)), ..) => (true, "asked for by name".into(), Decider::Person),
+            (Some((_, false)), ..) => (false, "left out by name".into(), Decider::Person),
+            (None, EffectBase::All, _) => (true, "all were asked for".into(), Decider::Person),
+            (None, EffectBase::None, _) => (false, "none was asked for".into(), Decider::Person),
+            (None, EffectBase::Auto, Some(found)) => {
+                (found.on, found.why.clone().into(), Decider::Scene)
+            }
+            (None, EffectBase::Auto, None) => {
                 let (on, why) = effect.called_for(subject);
-                (on, why, Decider::Scene)
+                (on, why.into(), Decider::Scene)
             }
         };
         Planned {
@@ -191,6 +210,7 @@ mod tests {
         let choice = EffectChoice {
             base: EffectBase::None,
             changes: vec![(Effect::Sky, false), (Effect::Sky, true)],
+            found: vec![found(Effect::Sky, false), found(Effect::Hairs, true)],
         };
         let plan = choice.plan(Subject::Cloth);
         let on: Vec<Effect> = (plan.iter().filter(|planned| planned.on))
@@ -198,6 +218,33 @@ mod tests {
             .collect();
         assert_eq!(on, [Effect::Sky]);
         assert!(plan.iter().all(|planned| planned.by == Decider::Person));
+    }
+
+    fn found(effect: Effect, on: bool) -> Found {
+        Found {
+            effect,
+            on,
+            why: "it was looked at".to_owned(),
+        }
+    }
+
+    #[test]
+    fn what_was_found_is_followed_where_nobody_says_anything() {
+        let choice = EffectChoice {
+            base: EffectBase::Auto,
+            changes: vec![(Effect::Hairs, true)],
+            found: vec![found(Effect::Sky, false), found(Effect::Hairs, false)],
+        };
+        let plan = choice.plan(Subject::Cloth);
+        let of = |effect| {
+            plan.iter()
+                .find(|planned| planned.effect == effect)
+                .unwrap()
+        };
+        let sky = of(Effect::Sky);
+        assert!(!sky.on && sky.by == Decider::Scene && sky.why == "it was looked at");
+        assert!(of(Effect::Hairs).on && of(Effect::Hairs).by == Decider::Person);
+        assert!(of(Effect::Shadows).on);
     }
 
     #[test]
@@ -210,7 +257,7 @@ mod tests {
         assert!(of(Effect::Shadows).unwrap().on);
         let all = EffectChoice {
             base: EffectBase::All,
-            changes: Vec::new(),
+            ..EffectChoice::default()
         };
         assert!(all.plan(Subject::Voxels).iter().all(|planned| planned.on));
     }

@@ -13,7 +13,9 @@ mod settings;
 
 pub use dial::{Dial, DialError, Invalidates, Measure};
 pub use dials::{DIALS, check, dial};
-pub use effect::{Decider, Effect, EffectBase, EffectChoice, Planned, Subject, UnknownEffect};
+pub use effect::{
+    Decider, Effect, EffectBase, EffectChoice, Found, Planned, Subject, UnknownEffect,
+};
 pub use settings::{Settings, ShowingSettings};
 
 use crate::cloth::ClothSettings;
@@ -80,7 +82,7 @@ impl Plan {
         let mut off = Vec::new();
         for planned in self.effects.iter_mut().filter(lacking) {
             planned.on = false;
-            planned.why = "this renderer has none of it";
+            planned.why = "this renderer has none of it".into();
             planned.by = Decider::Renderer;
             off.push(planned.effect);
         }
@@ -119,6 +121,7 @@ mod tests {
         let choice = EffectChoice {
             base: EffectBase::None,
             changes: vec![(Effect::Sky, true)],
+            ..EffectChoice::default()
         };
         let plan = Plan::new(&Settings::default(), &choice, Subject::Cloth).unwrap();
         assert_eq!(plan.effects.iter().filter(|effect| effect.on).count(), 1);

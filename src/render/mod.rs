@@ -7,6 +7,7 @@
 //! light of a [`scene`](crate::scene); [`still::render`] sums paths on a
 //! [`Film`](crate::film::Film), pass by pass, with the error reached.
 
+pub mod blocks;
 pub mod counters;
 pub mod effects;
 mod medium;
@@ -18,6 +19,7 @@ pub mod stack;
 pub mod still;
 pub mod track;
 
+pub use blocks::{BLOCK, BlockLight, BlocksSeen, look_at_blocks};
 pub use counters::Counters;
 pub use medium::{Arrival, MajorantWalk, Medium, PLACE, SYSTEM, Stretch, Voxel};
 pub use orders::{OrderHistogram, order_histogram};

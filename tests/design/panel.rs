@@ -44,7 +44,7 @@ fn look(x: f32, y: f32) -> StillRequest {
         centre_mm: Some([x, y]),
         effects: EffectChoice {
             base: EffectBase::None,
-            changes: Vec::new(),
+            ..EffectChoice::default()
         },
         settings: Settings::default().at_level(4),
         stop: Stop {

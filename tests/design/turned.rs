@@ -55,7 +55,7 @@ fn request(design: &Design, turned: bool, azimuth: i16) -> StillRequest {
         }),
         effects: EffectChoice {
             base: EffectBase::None,
-            changes: Vec::new(),
+            ..EffectChoice::default()
         },
         settings,
         stop: Stop {

@@ -1,4 +1,5 @@
-//! The tracer: tracking, fibres, films, denoising, stills, first sight and what accuracy costs.
+//! The tracer: tracking, fibres, films, denoising, stills, first sight, what a picture calls
+//! for, and what accuracy costs.
 
 #[path = "../common/picture_likeness/mod.rs"]
 mod picture_likeness;
@@ -11,6 +12,7 @@ mod engines;
 mod film;
 mod first_sight;
 mod follow;
+mod needs;
 mod sggx;
 mod still;
 mod tracking;

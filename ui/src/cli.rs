@@ -18,6 +18,7 @@ use pickglass::cloth::Region;
 use pickglass::engine::{Heading, LightChoice, RENDERERS};
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::formats::{self, Format};
+use pickglass::needs::Budget;
 use pickglass::plan::EffectChoice;
 use pickglass::posterise::Fit;
 use pickglass::synthesis::Method;
@@ -72,6 +73,8 @@ pub enum Command {
     Synthesize(SynthesizeArgs),
     /// Render a picture of the cloth
     Still(Box<StillArgs>),
+    /// Say which effects a picture calls for, what each changes and what it costs
+    Effects(Box<EffectsArgs>),
     /// Measure what each setting of each dial costs in time and how wrong it is
     Accuracy(Box<AccuracyArgs>),
     /// The weave library: names, repeats and what they are for
@@ -387,7 +390,7 @@ pub struct PictureArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = help::still())]
-#[group(id = "stop", multiple = false, args = ["spp", "seconds", "error"])]
+#[group(id = "stop", multiple = false, args = ["spp", "seconds", "error", "budget"])]
 pub struct StillArgs {
     /// A design (.ron), a draft, loom or image file, a preset's name or a volume (.vol, .nrrd,
     /// .nhdr, .mhd, .mha)
@@ -404,10 +407,40 @@ pub struct StillArgs {
     /// Refine until the relative error is this small, e.g. 0.02 or 2%
     #[arg(long, value_name = "E", value_parser = values::fraction)]
     pub error: Option<f64>,
+    /// Choose how often light is scattered by so many seconds or so little error, as 20s or
+    /// 2%, and say beforehand what the picture will come to
+    #[arg(long, value_name = "TIME|ERROR", conflicts_with = "tolerance")]
+    pub budget: Option<Budget>,
+    /// Leave out what changes 95 of 100 blocks of pixels by less, all of it together, as 1%
+    #[arg(long, value_name = "T", value_parser = values::fraction)]
+    pub tolerance: Option<f64>,
     /// Edge of a voxel along x, in mm, of a volume whose file does not say it or says it wrong
     #[arg(long, value_name = "MM", value_parser = values::positive)]
     pub voxel: Option<f64>,
     /// A colourway of the design, or all of them side by side ("all", .png; --size is each)
+    #[arg(long, value_name = "C")]
+    pub colourway: Option<String>,
+    #[command(flatten)]
+    pub sett: SettArgs,
+    #[command(flatten)]
+    pub image: ImageArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = help::EFFECTS)]
+pub struct EffectsArgs {
+    /// A design (.ron), a draft, loom or image file, or a preset's name
+    #[arg(value_hint = ValueHint::FilePath, default_value = DEFAULT_PRESET)]
+    pub design: String,
+    /// Leave out what changes 95 of 100 blocks of pixels by less, all of it together
+    #[arg(long, value_name = "T", default_value = "1%", value_parser = values::fraction)]
+    pub tolerance: f64,
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// A colourway of the design
     #[arg(long, value_name = "C")]
     pub colourway: Option<String>,
     #[command(flatten)]

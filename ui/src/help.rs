@@ -45,6 +45,15 @@ Says how well the blocks meet; makes no picture.
 With --json: crossings, seconds{…, total}, bytes, consistency{sum, max}, continuity{before,
 after, max}, seam_rms{before, after}.";
 
+/// What `effects` says.
+pub const EFFECTS: &str = "\
+Says of each effect whether the picture calls for it, why, what leaving it out changes and which
+share of the tracing it takes, measured on blocks of 8 × 8 pixels scattered over the picture. Left
+out is only what a bound says of that it is within the tolerance; `still --tolerance` does the same.
+
+With --json: effects[]{name, on, by, reason, bound, change, cost}, blocks, tolerance, left_out,
+saved, order, seconds, options (of a still that leaves the same out).";
+
 /// What `accuracy` writes and how it goes on.
 pub const ACCURACY: &str = "\
 Writes accuracy.md to read, accuracy.json, and of everything that is measured a plot (NAME.png,
@@ -79,7 +88,10 @@ pub fn still() -> String {
     format!(
         "\
 --seconds bounds the whole command, with making the cloth, denoising and writing; where the
-exemplars alone take longer, that is said and the picture gets one pass. --error is the relative
+exemplars alone take longer, that is said and the picture gets one pass. --budget does the same, or
+ends at an error, and chooses for how many scatterings light is followed: time for more paths
+against light that is missing. Nothing is left out of a picture that nobody allowed: --tolerance
+does. --error is the relative
 error √mean(Var/(mean²+0.01²)) over the pixels, before any denoising. Ctrl-C ends a still with
 the picture so far (interrupted), a second one at once.
 
@@ -99,7 +111,8 @@ Dials for --set, each with the values that it takes from crude to reference:
 
 With --json: renderer, width, height, spp, seconds{{…, total}}, paths_per_second, error,
 invalid_samples, majorant_violations, capped_walks, invalid_rays, effects[], level, light_error
-(of a coarse level; null: not measured), interrupted; with --colourway all, one sheet of every
+(of a coarse level; null: not measured), interrupted; with --tolerance, needs{{…}} as of effects;
+with --budget, promise{{seconds, error, bias, spp, order}}; with --colourway all, one sheet of every
 colourway: colourways[]{{name, x, y, width, height, recoloured}}.",
         effects.join("\n"),
         dials.join("\n")

@@ -120,6 +120,12 @@ pub fn of_volume(args: &StillArgs) -> anyhow::Result<()> {
     if args.colourway.is_some() {
         idle.push("--colourway".to_owned());
     }
+    if args.tolerance.is_some() {
+        idle.push("--tolerance".to_owned());
+    }
+    if args.budget.is_some() {
+        idle.push("--budget".to_owned());
+    }
     if args.picture.backing == Some(Backing::Itself) {
         idle.push("--backing self".to_owned());
     }
@@ -152,6 +158,9 @@ pub fn in_still(
         ("--spp", args.picture.spp.is_some()),
         ("--seconds", args.seconds.is_some()),
         ("--error", args.error.is_some()),
+        ("--budget", args.budget.is_some()),
+        // It ends nothing, and asks as much of what draws.
+        ("--tolerance", args.tolerance.is_some() && !renderer.refines),
     ];
     let stop = stops.into_iter().find(|(_, given)| *given);
     let stop = stop.map(|(flag, _)| flag);

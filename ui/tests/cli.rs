@@ -495,6 +495,81 @@ fn accuracy_is_measured_into_a_folder_and_gone_on_from() {
 }
 
 #[test]
+fn what_a_picture_calls_for_is_said_and_a_budget_is_promised() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let small = ["silk-satin", "--size", "48x32", "--mm", "4"];
+    let run = |command: &[&str], more: &[&str]| {
+        pickglass(folder.path(), &[command, &small, more].concat())
+    };
+    let effects = json(&run(&["effects"], &["--light", "sun", "--json"]));
+    has_keys(
+        &effects,
+        &[
+            "blocks",
+            "tolerance",
+            "left_out",
+            "saved",
+            "order",
+            "seconds",
+            "options",
+            "effects.0.name",
+            "effects.0.on",
+            "effects.0.by",
+            "effects.0.reason",
+        ],
+    );
+    let of = |report: &serde_json::Value, name: &str| {
+        let all = report["effects"].as_array().expect("effects").clone();
+        let found = all.into_iter().find(|effect| effect["name"] == name);
+        found.expect("an effect")
+    };
+    assert_eq!(of(&effects, "hairs")["on"], false);
+    assert!(of(&effects, "shadows")["cost"].is_number());
+    // A still that leaves the same out says so, and its options make it without looking.
+    let still = ["still", "-o", "a.png"];
+    let made = json(&run(
+        &still,
+        &[
+            "--light",
+            "sun",
+            "--spp",
+            "1",
+            "--tolerance",
+            "1%",
+            "--json",
+        ],
+    ));
+    assert_eq!(of(&made, "sky")["by"], "scene");
+    assert_eq!(made["needs"]["order"], effects["order"]);
+    let options = made["needs"]["options"].as_str().expect("options");
+    assert!(
+        options.contains("-sky") && options.contains("--set order="),
+        "{options}"
+    );
+    let promised = json(&run(&still, &["--budget", "1s", "--json"]));
+    has_keys(
+        &promised,
+        &["promise.seconds", "promise.error", "promise.order"],
+    );
+    for wrong in [
+        &["--budget", "2"][..],
+        &["--budget", "1%", "--tolerance", "1%"],
+        &["--budget", "1%", "--spp", "2"],
+        &["--tolerance", "0"],
+    ] {
+        refused(&run(&still, wrong), 2);
+    }
+    for idle in [
+        &["--tolerance", "1%", "--renderer", "sight"][..],
+        &["--budget", "1%", "--renderer", "sight"],
+        &["--budget", "1%", "--colourway", "all"],
+    ] {
+        let line = refused(&run(&still, idle), 1);
+        assert!(line.contains(idle[0]), "{line}");
+    }
+}
+
+#[test]
 fn options_that_others_leave_nothing_to_say_are_refused_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let still = |file: &str, more: &[&str]| {

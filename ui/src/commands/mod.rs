@@ -4,6 +4,7 @@
 mod accuracy;
 mod check;
 mod convert;
+mod effects;
 mod posterize;
 mod shell;
 mod still;
@@ -28,6 +29,7 @@ pub fn run(cli: Cli, begun: Instant) -> anyhow::Result<()> {
         Some(Command::Posterize(args)) => posterize::run(&args),
         Some(Command::Synthesize(args)) => synthesize::run(&args),
         Some(Command::Still(args)) => still::run(&args, begun),
+        Some(Command::Effects(args)) => effects::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Weaves(args)) => weaves::run(&args),
         Some(Command::Volume(args)) => volume::run(&args),

@@ -1,24 +1,27 @@
 //! `pickglass still`: a picture of the cloth.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use super::{note_warnings, seconds_json};
+use super::{effects, note_warnings, seconds_json};
 use crate::cli::{PictureArgs, StillArgs, source_words};
 use crate::idle;
 use crate::interrupt::Interrupt;
 use crate::late::Late;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
+use pickglass::design::Design;
 use pickglass::engine::{
-    self, ALL_COLOURWAYS, Pass, Renderer, StillError, StillReport, StillRequest, Stop,
+    self, ALL_COLOURWAYS, Engine, Pass, Renderer, StillError, StillReport, StillRequest, Stop,
 };
 use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::output;
 use pickglass::formats::volume::{self, VolumeFormat};
 use pickglass::job::Job;
+use pickglass::needs::{self, Budget, Needs, Promise};
 use pickglass::plan::{Settings, Subject};
 use pickglass::render::Backing;
 
@@ -64,11 +67,87 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     note_warnings(&opened.warnings);
     let request = request(args, Backing::Itself)?;
     idle::in_still(args, &request, renderer, Subject::Cloth)?;
+    let settling = Settling::of(args);
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
+        if let Some(flag) = settling.flag() {
+            anyhow::bail!("{flag}: colourways side by side are made alike: leave it out");
+        }
         return sheet(args, &opened, (&request, renderer), begun);
     }
-    let made = render_to(&opened, (&request, renderer), path, begun, source(args))?;
-    tell(&made.0, path, made.1, args.json)
+    let picture = (&request, renderer);
+    let made = render_to(&opened, picture, settling, path, begun, source(args))?;
+    made.tell(path, args.json)
+}
+
+/// What is settled about a picture once its cloth is there.
+#[derive(Debug, Clone, Copy)]
+pub enum Settling {
+    /// Nothing: it is made as it is asked for.
+    Nothing,
+    /// What it leaves out, by a tolerance.
+    Tolerance(f64),
+    /// How often light is scattered, and when it ends.
+    Budget(Budget),
+}
+
+impl Settling {
+    fn of(args: &StillArgs) -> Self {
+        match (args.tolerance, args.budget) {
+            (Some(tolerance), _) => Self::Tolerance(tolerance),
+            (_, Some(budget)) => Self::Budget(budget),
+            (None, None) => Self::Nothing,
+        }
+    }
+
+    /// The option that asks for it.
+    fn flag(self) -> Option<&'static str> {
+        match self {
+            Self::Nothing => None,
+            Self::Tolerance(_) => Some("--tolerance"),
+            Self::Budget(_) => Some("--budget"),
+        }
+    }
+}
+
+/// What was settled.
+enum Settled {
+    Nothing,
+    Needs(Box<StillRequest>, Needs),
+    Promise(Promise),
+}
+
+/// A picture that was made and written.
+pub struct Made {
+    report: StillReport,
+    settled: Settled,
+    interrupted: bool,
+}
+
+impl Made {
+    /// Says how it came about.
+    pub fn tell(&self, path: &Path, json: bool) -> anyhow::Result<()> {
+        note_warnings(&self.report.warnings);
+        if !json {
+            return out::say(&describe(&self.report, path, self.interrupted));
+        }
+        let mut report = report_json(&self.report, self.interrupted);
+        match &self.settled {
+            Settled::Nothing => {}
+            Settled::Needs(request, needs) => {
+                report["needs"] = effects::needs_json(request, &self.report.renderer, needs);
+            }
+            Settled::Promise(promise) => {
+                report["promise"] = json!({
+                    "seconds": promise.seconds,
+                    "error": promise.error,
+                    "bias": promise.bias,
+                    "spp": promise.spp,
+                    "order": promise.order,
+                });
+            }
+        }
+        out::say_json(&report)
+    }
 }
 
 /// Says how a picture came about.
@@ -184,22 +263,67 @@ fn sheet(
     out::say(&format!("{line}\n  {}", sheet.labels()))
 }
 
-/// Renders a picture into a file, with progress on standard error; says also whether an
-/// interrupt ended it.
+/// Renders a picture into a file, with progress on standard error.
 pub fn render_to(
     opened: &Opened,
     (request, renderer): (&StillRequest, &Renderer),
+    settling: Settling,
     path: &Path,
     begun: Instant,
     source: String,
-) -> anyhow::Result<(StillReport, bool)> {
+) -> anyhow::Result<Made> {
     let work = Work::begin(&request.stop, begun);
-    let still = engine::render_still(&opened.design, request, renderer, &work.job, &mut |pass| {
-        work.pass(pass);
-    });
+    let mut settled = Settled::Nothing;
+    let mut settle = |engine: &dyn Engine, design: &Arc<Design>| match settling {
+        Settling::Nothing => Ok(None),
+        Settling::Tolerance(tolerance) => {
+            let (request, needs) =
+                needs::settle(engine, renderer, design, request, tolerance, &work.job)?;
+            work.progress.finish();
+            out::note(&effects::left_out(&request, &needs));
+            settled = Settled::Needs(Box::new(request.clone()), needs);
+            Ok(Some(request))
+        }
+        Settling::Budget(budget) => {
+            let afforded = needs::afford(engine, renderer, request, (budget, begun), &work.job)?;
+            Ok(afforded.map(|(request, promise)| {
+                work.progress.finish();
+                out::note(&promised(&promise));
+                settled = Settled::Promise(promise);
+                request
+            }))
+        }
+    };
+    let still = engine::render_settled(
+        &opened.design,
+        request,
+        renderer,
+        &work.job,
+        &mut settle,
+        &mut |pass| work.pass(pass),
+    );
     let still = work.ended(still)?.made_from(source);
     still.save(path)?;
-    Ok((still.report, work.interrupt.happened()))
+    Ok(Made {
+        report: still.report,
+        settled,
+        interrupted: work.interrupt.happened(),
+    })
+}
+
+/// What a picture will come to, for a person.
+fn promised(promise: &Promise) -> String {
+    let bias = match promise.bias > 1e-4 {
+        true => format!(", {:.1} % of it whatever the time", 100.0 * promise.bias),
+        false => String::new(),
+    };
+    format!(
+        "it will take {:.1} s, error {:.1} %{bias}: {} paths a pixel, light followed for {} scatterings",
+        promise.seconds,
+        100.0 * promise.error,
+        promise.spp,
+        promise.order,
+    )
 }
 
 /// The picture's line for a person.
@@ -250,7 +374,7 @@ fn report_json(report: &StillReport, interrupted: bool) -> Value {
             json!({
                 "name": planned.effect.name(),
                 "on": planned.on,
-                "reason": planned.why,
+                "reason": &*planned.why,
                 "by": planned.by.to_string(),
             })
         })
@@ -288,8 +412,14 @@ fn request(args: &StillArgs, backing: Backing) -> anyhow::Result<StillRequest> {
     let mut request = picture(&args.picture, backing)?;
     request.stop = Stop {
         spp: args.picture.spp,
-        seconds: args.seconds,
-        error: args.error,
+        seconds: args.seconds.or(match args.budget {
+            Some(Budget::Seconds(seconds)) => Some(seconds),
+            _ => None,
+        }),
+        error: args.error.or(match args.budget {
+            Some(Budget::Error(error)) => Some(error),
+            _ => None,
+        }),
     };
     request.colourway.clone_from(&args.colourway);
     Ok(request)

@@ -82,12 +82,13 @@ fn without_window(opened: &Opened, reason: &str, source: String, json: bool) -> 
     };
     let path = Path::new(FALLBACK_PICTURE);
     output::check(path, opened.path.as_deref())?;
-    let (report, interrupted) = still::render_to(
+    let made = still::render_to(
         opened,
         (&request, reference()),
+        still::Settling::Nothing,
         path,
         Instant::now(),
         source,
     )?;
-    still::tell(&report, path, interrupted, json)
+    made.tell(path, json)
 }

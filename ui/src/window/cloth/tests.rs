@@ -39,7 +39,7 @@ fn bench() -> Harness<'static, Bench> {
                     store: ExemplarStore::user(),
                     effects: EffectChoice {
                         base: EffectBase::None,
-                        changes: Vec::new(),
+                        ..EffectChoice::default()
                     },
                     settings,
                 };

@@ -49,7 +49,7 @@ fn crude() -> PreviewSettings {
         store: ExemplarStore::user(),
         effects: EffectChoice {
             base: EffectBase::None,
-            changes: Vec::new(),
+            ..EffectChoice::default()
         },
         settings,
     }

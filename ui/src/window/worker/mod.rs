@@ -535,7 +535,7 @@ mod tests {
             height: 48,
             effects: EffectChoice {
                 base: EffectBase::None,
-                changes: Vec::new(),
+                ..EffectChoice::default()
             },
             settings: Settings::default().at_level(4),
             ..StillRequest::default()

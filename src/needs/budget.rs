@@ -1,0 +1,237 @@
+//! A picture for so many seconds, or with so little error: what is left out for it, and what it
+//! will come to.
+
+use std::str::FromStr;
+use std::time::Instant;
+
+use super::block_change::DARK;
+use super::settling::Eye;
+use crate::engine::{self, Engine, Renderer, StillError, StillRequest, Stop};
+use crate::film;
+use crate::job::Job;
+use crate::plan::{Effect, Subject};
+use crate::render::{BLOCK, BlocksSeen};
+
+/// What a picture may take, or how wrong it may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Budget {
+    /// Seconds of the whole work, as [`Stop::seconds`].
+    Seconds(f64),
+    /// Relative error, noise and what is left out together.
+    Error(f64),
+}
+
+impl FromStr for Budget {
+    type Err = String;
+
+    /// `2s`, `2.5 s`, `500ms`, `3min` or `1%`.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let wrong = || "expected seconds or an error, as 2s or 1%".to_owned();
+        let text = text.trim();
+        let units = [("%", 0.01), ("ms", 1e-3), ("min", 60.0), ("s", 1.0)];
+        let (unit, scale, number) = units
+            .into_iter()
+            .find_map(|(unit, scale)| Some((unit, scale, text.strip_suffix(unit)?)))
+            .ok_or_else(wrong)?;
+        let number: f64 = number.trim().parse().map_err(|_| wrong())?;
+        let value = number * scale;
+        match unit {
+            "%" if value > 0.0 && value <= 1.0 => Ok(Self::Error(value)),
+            "%" => Err("expected an error above 0 and at most 100 %".to_owned()),
+            _ if value > 0.0 && value.is_finite() => Ok(Self::Seconds(value)),
+            _ => Err("expected seconds above 0".to_owned()),
+        }
+    }
+}
+
+/// What a picture will come to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Promise {
+    /// Seconds of the whole work.
+    pub seconds: f64,
+    /// Relative error: noise, as [`film::error`](crate::film::error) has it, and what is left out.
+    pub error: f64,
+    /// The part of the error that no time makes smaller.
+    pub bias: f64,
+    /// Paths a pixel.
+    pub spp: u32,
+    /// Scatterings for which light is followed.
+    pub order: u32,
+    /// Seconds that working it out took.
+    pub looked: f64,
+}
+
+/// Share of the seconds, at most, that working it out may take.
+const LOOKING: f64 = 0.05;
+/// Paths a pixel of the first look, and its blocks.
+const FIRST: (u32, usize) = (4, 24);
+/// Paths a pixel of the second, at most: of fewer the noise of dark places is not known, and it
+/// comes out too small.
+const MOST_SPP: u32 = 64;
+/// Its blocks, at least.
+const FEWEST: f64 = 48.0;
+/// Most paths a pixel that are promised.
+const MOST_PATHS: f64 = 65_536.0;
+
+/// Settles a picture by a budget: how often light is scattered, and when it ends. Its work began
+/// at `begun`. `None` where the engine follows no paths.
+///
+/// # Errors
+/// When the request is not usable or the job is cancelled.
+pub fn afford(
+    engine: &dyn Engine,
+    renderer: &Renderer,
+    request: &StillRequest,
+    (budget, begun): (Budget, Instant),
+    job: &Job,
+) -> Result<Option<(StillRequest, Promise)>, StillError> {
+    let looking = Instant::now();
+    let mut eye = Eye::new(renderer, request, job);
+    let all = std::mem::take(&mut eye.corners);
+    // Every so many blocks: still from all over the picture.
+    let step = all.len().div_ceil(FIRST.1).max(1);
+    eye.corners = all.iter().copied().step_by(step).collect();
+    // What is made at the first look is no part of a path's time.
+    if eye.look(engine, request, 1, &|_| {})?.is_none() {
+        return Ok(None);
+    }
+    let Some(mut seen) = eye.look(engine, request, FIRST.0, &|_| {})? else {
+        return Ok(None);
+    };
+    let pixels = f64::from(request.width) * f64::from(request.height);
+    let per_path = |seen: &BlocksSeen| seen.seconds / seen.counters.paths.max(1) as f64;
+    // A longer look where there is time for it.
+    let time = match budget {
+        Budget::Seconds(seconds) => seconds,
+        Budget::Error(error) => {
+            let one = noise_of_one(&seen);
+            pixels * per_path(&seen) * (one / error).powi(2)
+        }
+    };
+    // Noise is known from many paths of few blocks, what is left out from many blocks.
+    let paths = LOOKING * time / per_path(&seen) / f64::from(BLOCK * BLOCK);
+    let blocks =
+        (paths / f64::from(MOST_SPP)).clamp(FEWEST.min(all.len() as f64), all.len() as f64);
+    let spp = (paths / blocks).min(f64::from(MOST_SPP)) as u32;
+    if spp > FIRST.0 {
+        let step = (all.len() as f64 / blocks) as usize;
+        eye.corners = all.into_iter().step_by(step.max(1)).collect();
+        if let Some(longer) = eye.look(engine, request, spp, &|_| {})? {
+            seen = longer;
+        }
+    }
+    let plan = renderer.plan(request, Subject::Cloth)?;
+    let asked = plan.render.max_order;
+    let model = Model {
+        noise: noise_of_one(&seen),
+        seconds: pixels * per_path(&seen),
+        seen: &seen,
+    };
+    let fixed = begun.elapsed().as_secs_f64() + engine::finishing_seconds(request);
+    let orders = match plan.on(Effect::Multiple) {
+        true => (0..16).map(|power| 1 << power).collect(),
+        false => Vec::new(),
+    };
+    let orders = orders.into_iter().filter(|order| *order < asked);
+    let promises = (orders.chain([asked])).filter_map(|order| model.promise(order, budget, fixed));
+    let better = |one: &Promise, other: &Promise| match budget {
+        Budget::Seconds(_) => one.error.total_cmp(&other.error),
+        Budget::Error(_) => one.seconds.total_cmp(&other.seconds),
+    };
+    // The last one, all orders, can always be promised.
+    let Some(mut promise) = promises.min_by(better) else {
+        return Ok(None);
+    };
+    promise.looked = looking.elapsed().as_secs_f64();
+    let mut settled = request.clone();
+    if promise.order < asked {
+        settled.settings.render.max_order = promise.order;
+    }
+    settled.stop = match budget {
+        Budget::Seconds(seconds) => Stop {
+            seconds: Some(seconds),
+            ..Stop::default()
+        },
+        Budget::Error(error) => Stop {
+            error: Some(
+                (error * error - promise.bias * promise.bias)
+                    .max(1e-12)
+                    .sqrt(),
+            ),
+            ..Stop::default()
+        },
+    };
+    Ok(Some((settled, promise)))
+}
+
+/// Noise of a picture of one path a pixel.
+fn noise_of_one(seen: &BlocksSeen) -> f64 {
+    let error = film::estimate(&seen.film).error;
+    let error = if error.is_finite() { error } else { 1.0 };
+    error * f64::from(seen.film.spp()).sqrt()
+}
+
+/// What one look says of the picture.
+struct Model<'s> {
+    /// Noise of one path a pixel.
+    noise: f64,
+    /// Seconds of one path a pixel, of all orders.
+    seconds: f64,
+    seen: &'s BlocksSeen,
+}
+
+impl Model<'_> {
+    /// What is wrong where light is followed for so many scatterings: root mean square of the
+    /// blocks' relative light.
+    fn bias(&self, order: u32) -> f64 {
+        let squares = self.seen.light.iter().map(|block| {
+            let share = block.beyond(order) / (block.mean() + DARK);
+            share * share
+        });
+        (squares.sum::<f64>() / self.seen.light.len().max(1) as f64).sqrt()
+    }
+
+    /// What the picture comes to; `None` where it cannot be within the budget.
+    fn promise(&self, order: u32, budget: Budget, fixed: f64) -> Option<Promise> {
+        let bias = self.bias(order);
+        let one = self.seconds * self.seen.flights_up_to(order);
+        let spp = match budget {
+            Budget::Seconds(seconds) => (seconds - fixed) / one,
+            Budget::Error(error) => {
+                let noise = error * error - bias * bias;
+                if noise <= 0.0 {
+                    return None;
+                }
+                self.noise * self.noise / noise
+            }
+        };
+        let spp = spp.clamp(1.0, MOST_PATHS);
+        Some(Promise {
+            seconds: fixed + spp * one,
+            error: (bias * bias + self.noise * self.noise / spp).sqrt(),
+            bias,
+            spp: spp.round() as u32,
+            order,
+            looked: 0.0,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_budget_is_time_or_error() {
+        assert_eq!("2s".parse(), Ok(Budget::Seconds(2.0)));
+        assert_eq!(" 2.5 s".parse(), Ok(Budget::Seconds(2.5)));
+        assert_eq!("500ms".parse(), Ok(Budget::Seconds(0.5)));
+        assert_eq!("3min".parse(), Ok(Budget::Seconds(180.0)));
+        assert_eq!("1%".parse(), Ok(Budget::Error(0.01)));
+        for wrong in [
+            "", "2", "s", "%", "0s", "-1s", "nans", "infs", "0%", "101%", "2h",
+        ] {
+            assert!(wrong.parse::<Budget>().is_err(), "{wrong}");
+        }
+    }
+}

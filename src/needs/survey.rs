@@ -1,0 +1,154 @@
+//! Looks at every effect of a picture, with it and without: what it changes, what it costs.
+
+use std::sync::Arc;
+
+use super::block_change::{DARK, common, upper_percentile};
+use super::settling::{Eye, Need, Needs, at_most, settle};
+use crate::design::Design;
+use crate::engine::{Engine, Renderer, StillError, StillRequest};
+use crate::exemplar::ExemplarStore;
+use crate::job::Job;
+use crate::plan::{Decider, Effect, Subject};
+use crate::render::BlocksSeen;
+
+/// Paths a pixel of each of two looks.
+const SPP: u32 = 12;
+
+/// What a picture of a design calls for, settled as [`settle`] does, and what each effect that is
+/// on changes and costs. Times are of this machine now.
+///
+/// # Errors
+/// When the request is not usable or the job is cancelled.
+pub fn survey(
+    design: &Arc<Design>,
+    renderer: &Renderer,
+    request: &StillRequest,
+    tolerance: f64,
+    store: &ExemplarStore,
+    job: &Job,
+) -> Result<(StillRequest, Needs), StillError> {
+    let begun = std::time::Instant::now();
+    let quiet = &job.clone().with_listener(|_, _| {});
+    job.report("making the cloth", 0.0);
+    let design = &crate::engine::coloured(design, request)?;
+    let engine = renderer.engine(design, request, store, quiet)?;
+    job.report("looking at the light", 0.1);
+    let (settled, mut needs) = settle(&*engine, renderer, design, request, tolerance, quiet)?;
+    let eye = Eye::new(renderer, request, quiet);
+    let plan = renderer.plan(request, Subject::Cloth)?;
+    let mut surveying = Surveying {
+        eye,
+        request,
+        with: None,
+    };
+    let count = needs.effects.len() as f32;
+    for (number, need) in needs.effects.iter_mut().enumerate() {
+        // What there is nothing of, and what somebody left out, has nothing to be looked at.
+        if !plan.on(need.effect) || need.bound == Some(0.0) {
+            continue;
+        }
+        job.report(
+            &format!("without {}", need.effect),
+            0.2 + 0.8 * number as f32 / count,
+        );
+        let mut without = request.clone();
+        without.effects.changes.push((need.effect, false));
+        let same = renderer.plan(&without, Subject::Cloth)?.cloth == plan.cloth;
+        let other = match same {
+            true => None,
+            false => Some(renderer.engine(design, &without, store, quiet)?),
+        };
+        let other = other.as_deref().unwrap_or(&*engine);
+        surveying.tell(need, (&*engine, other), &without)?;
+    }
+    needs.seconds = begun.elapsed().as_secs_f64();
+    Ok((settled, needs))
+}
+
+/// Two looks at the same blocks, with other paths each.
+type Looks = [BlocksSeen; 2];
+
+struct Surveying<'s> {
+    eye: Eye<'s>,
+    request: &'s StillRequest,
+    /// The picture as it is asked for, once it was looked at.
+    with: Option<Looks>,
+}
+
+impl Surveying<'_> {
+    fn looks(
+        &self,
+        engine: &dyn Engine,
+        request: &StillRequest,
+    ) -> Result<Option<Looks>, StillError> {
+        // What is made at the first look is no part of its time.
+        if self.eye.look(engine, request, 1, &|_| {})?.is_none() {
+            return Ok(None);
+        }
+        let look = |other_paths: u64| {
+            self.eye.look(engine, request, SPP, &|shot| {
+                shot.plan.render.seed = shot.plan.render.seed.wrapping_add(other_paths);
+            })
+        };
+        let (one, other) = (look(1)?, look(2)?);
+        Ok(one.zip(other).map(|(one, other)| [one, other]))
+    }
+
+    /// What leaving an effect out changes and saves.
+    fn tell(
+        &mut self,
+        need: &mut Need,
+        (engine, other): (&dyn Engine, &dyn Engine),
+        without: &StillRequest,
+    ) -> Result<(), StillError> {
+        if self.with.is_none() {
+            self.with = self.looks(engine, self.request)?;
+        }
+        let without = self.looks(other, without)?;
+        let (Some(with), Some(without)) = (&self.with, &without) else {
+            return Ok(());
+        };
+        let light: Vec<f64> = (with[0].light.iter().zip(&with[1].light))
+            .map(|(one, other)| 0.5 * (one.mean() + other.mean()))
+            .collect();
+        let change = |at: usize| -> Vec<f64> {
+            let both = without[at].light.iter().zip(&with[at].light);
+            both.zip(&light)
+                .map(|((without, with), light)| (without.mean() - with.mean()) / (light + DARK))
+                .collect()
+        };
+        let (one, other) = (change(0), change(1));
+        let change = common(&one, &other);
+        let seconds = |looks: &Looks| looks[0].seconds.min(looks[1].seconds);
+        need.change = Some(change);
+        need.cost = Some(1.0 - seconds(without) / seconds(with).max(1e-9));
+        if need.bound.is_none() {
+            let both: Vec<f64> = (one.iter().zip(&other))
+                .map(|(one, other)| (0.5 * (one + other)).abs())
+                .collect();
+            let bound = upper_percentile(&both);
+            need.bound = Some(bound);
+            if need.by == Decider::Scene {
+                need.why = reason(need.effect, change, bound);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why an effect is on.
+fn reason(effect: Effect, change: f64, bound: f64) -> String {
+    let without = match effect {
+        Effect::Shadows => "without them places are lit alike, and too bright",
+        Effect::Hairs => "without them the faces are bare",
+        Effect::EdgeFixing => "without it yarns break at the borders of crossings",
+        Effect::Randomisation => "without it every repeat looks the same",
+        Effect::Tap => "without it voxels show as steps",
+        Effect::Multiple | Effect::Sky => "without it there is less light",
+    };
+    format!(
+        "{without}: a place changes by {} on average, 95 of 100 by {} at most",
+        at_most(change),
+        at_most(bound)
+    )
+}
