@@ -92,7 +92,7 @@ pub(super) fn corners(width: u32, height: u32) -> Vec<[u32; 2]> {
     let [across, down] = [width, height].map(|pixels| pixels.div_ceil(BLOCK).max(1));
     let shape = f64::from(across) / f64::from(down);
     let columns = (f64::from(BLOCKS) * shape).sqrt().round().max(1.0);
-    let columns = (columns as u32).clamp(1, across);
+    let columns = (columns as u32).clamp(1, across.min(BLOCKS));
     let rows = (BLOCKS / columns).clamp(1, down);
     let places = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
     places
