@@ -76,7 +76,7 @@ pub fn render_still(
 }
 
 /// Settles what is left open of a picture once its engine is ready, by looking at it: what is
-/// asked for instead, which needs no other engine; `None` where that stays as it is.
+/// asked for instead, which needs no other engine and no other light; `None` where that stays as it is.
 pub type Settle<'s> =
     dyn FnMut(&dyn Engine, &Arc<Design>) -> Result<Option<StillRequest>, StillError> + 's;
 
@@ -94,15 +94,21 @@ pub fn render_settled(
 ) -> Result<Still, StillError> {
     renderer.check(Subject::Cloth)?;
     // What is wrong with the light is said before anything takes long.
-    Shot::new(request, renderer.plan(request, Subject::Cloth)?)?;
+    let shot = Shot::new(request, renderer.plan(request, Subject::Cloth)?)?;
     let job = &finishing::bounded(request, job);
     let engine = renderer.engine(design, request, &ExemplarStore::user(), job)?;
     let design = coloured(design, request)?;
     let begun = Instant::now();
     let settled = settle(&*engine, &design)?;
     let looked = settled.is_some().then(|| begun.elapsed().as_secs_f64());
-    let request = settled.as_ref().unwrap_or(request);
-    let shot = Shot::new(request, renderer.plan(request, Subject::Cloth)?)?;
+    let shot = match &settled {
+        Some(request) => Shot {
+            plan: renderer.plan(request, Subject::Cloth)?,
+            request,
+            ..shot
+        },
+        None => shot,
+    };
     let mut still = draw(&*engine, &design, &shot, job, on_pass)?;
     if let Some(seconds) = looked {
         let report = &mut still.report;

@@ -4,7 +4,7 @@
 use std::str::FromStr;
 use std::time::Instant;
 
-use super::block_change::DARK;
+use super::block_change::{common, relative};
 use super::settling::Eye;
 use crate::engine::{self, Engine, Renderer, StillError, StillRequest, Stop};
 use crate::film;
@@ -57,8 +57,6 @@ pub struct Promise {
     pub spp: u32,
     /// Scatterings for which light is followed.
     pub order: u32,
-    /// Seconds that working it out took.
-    pub looked: f64,
 }
 
 /// Share of the seconds, at most, that working it out may take.
@@ -85,7 +83,6 @@ pub fn afford(
     (budget, begun): (Budget, Instant),
     job: &Job,
 ) -> Result<Option<(StillRequest, Promise)>, StillError> {
-    let looking = Instant::now();
     let mut eye = Eye::new(renderer, request, job);
     let all = std::mem::take(&mut eye.corners);
     // Every so many blocks: still from all over the picture.
@@ -139,10 +136,9 @@ pub fn afford(
         Budget::Error(_) => one.seconds.total_cmp(&other.seconds),
     };
     // The last one, all orders, can always be promised.
-    let Some(mut promise) = promises.min_by(better) else {
+    let Some(promise) = promises.min_by(better) else {
         return Ok(None);
     };
-    promise.looked = looking.elapsed().as_secs_f64();
     let mut settled = request.clone();
     if promise.order < asked {
         settled.settings.render.max_order = promise.order;
@@ -184,11 +180,12 @@ impl Model<'_> {
     /// What is wrong where light is followed for so many scatterings: root mean square of the
     /// blocks' relative light.
     fn bias(&self, order: u32) -> f64 {
-        let squares = self.seen.light.iter().map(|block| {
-            let share = block.beyond(order) / (block.mean() + DARK);
-            share * share
-        });
-        (squares.sum::<f64>() / self.seen.light.len().max(1) as f64).sqrt()
+        let blocks = self.seen.light.iter();
+        let (beyond, light): (Vec<f64>, Vec<f64>) = blocks
+            .map(|block| (block.beyond(order), block.mean()))
+            .unzip();
+        let shares = relative(&beyond, &light);
+        common(&shares, &shares)
     }
 
     /// What the picture comes to; `None` where it cannot be within the budget.
@@ -212,7 +209,6 @@ impl Model<'_> {
             bias,
             spp: spp.round() as u32,
             order,
-            looked: 0.0,
         })
     }
 }

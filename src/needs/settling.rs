@@ -46,7 +46,7 @@ pub struct Needs {
     pub blocks: usize,
     /// The largest change that was allowed.
     pub tolerance: f64,
-    /// Bounds of all that is left out, added up.
+    /// What all that is left out changes together at most of 95 of 100 blocks.
     pub left_out: f64,
     /// Share of the tracing that is saved.
     pub saved: f64,
@@ -113,7 +113,7 @@ pub(super) fn corners(width: u32, height: u32) -> Vec<[u32; 2]> {
 
 /// Settles what a picture of `request` leaves out, where whoever asks for it says nothing: no
 /// more than changes 95 of 100 blocks by less than `tolerance`, relative to their light.
-/// `engine` is ready for the request; what comes back needs no other.
+/// `engine` is ready for the request; what comes back needs no other, and has the same light.
 ///
 /// # Errors
 /// When the request is not usable or the job is cancelled.
