@@ -79,6 +79,7 @@
 //! | [`engine`] | draws a design: the table of engines, stills, sheets | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
 //! | [`needs`] | which effects a picture calls for | `random` `job` `design` `exemplar` `scene` `film` `render` `cloth` `plan` `engine` |
 //! | [`accuracy`] | what each dial's settings cost and how wrong they are, measured | `random` `job` `atomic` `design` `synthesis` `exemplar` `scene` `film` `cloth` `formats` `plan` `engine` |
+//! | [`selftest`] | hard cases, tried on a user's machine | `hash` `random` `job` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `formats` `edit` `presets` `plan` `engine` |
 
 pub mod accuracy;
 pub mod atomic;
@@ -101,6 +102,7 @@ pub mod print;
 pub mod random;
 pub mod render;
 pub mod scene;
+pub mod selftest;
 pub mod synthesis;
 pub mod text;
 pub mod volume;

@@ -38,6 +38,9 @@ pub const PICTURE_SIDE: RangeInclusive<u32> = 1..=16_384;
 /// Width of cloth that a picture shows, mm.
 pub const PICTURE_MM: RangeInclusive<f32> = 0.01..=100_000.0;
 
+/// The middle of a picture, mm from the first crossing, each way.
+pub const CENTRE_MM: RangeInclusive<f32> = -1e9..=1e9;
+
 /// Paths a pixel of a still.
 pub const STILL_SPP: RangeInclusive<u32> = 1..=1_000_000;
 
@@ -85,6 +88,10 @@ pub fn table() -> Vec<Limit> {
         ("crossings of exported yarns", YARN_CROSSINGS.to_string()),
         ("pixels of a picture, each way", whole(&PICTURE_SIDE)),
         ("width of a picture, mm", in_words(&PICTURE_MM)),
+        (
+            "middle of a picture, mm from the first crossing",
+            in_words(&CENTRE_MM),
+        ),
         ("paths a pixel of a still", whole(&STILL_SPP)),
         (
             "MiB of a file of a design or draft",

@@ -3,8 +3,9 @@
 #
 #   bash tests/run.sh            all checks
 #   bash tests/run.sh --bench    the measurements instead, printed and never asserted
-#   bash tests/run.sh --soak     what takes long: references that are missing, all views of
-#                                the preview, and its first minute by the clock, printed
+#   bash tests/run.sh --soak     what takes long: hard cases by the thousand, references that
+#                                are missing, all views of the preview, and its first minute
+#                                by the clock, printed
 #
 # Installs what it needs when it may (root and apt-get); otherwise it says what is
 # missing and goes on, and the tests that need it say so. With CI=true nothing that is
@@ -334,7 +335,16 @@ never_worse() {
         --nocapture --test-threads 1 no_picture_that_is_shown
 }
 
+# Hard cases by the thousand: designs, files, edits, events, stalls.
+hard_cases() {
+    local -x PICKGLASS_LONG=yes
+    cargo test --release --workspace --test hard_cases -- --nocapture
+    cargo test --release --workspace --test edit properties
+    cargo test --release --workspace --bin pickglass -- the_last_picture random_events
+}
+
 soak_all() {
+    step "hard cases" hard_cases
     step "references" cargo bench --bench preview_references --profile release
     step "never worse" never_worse
     step "first minute" first_minute alone

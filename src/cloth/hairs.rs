@@ -9,7 +9,7 @@ use glam::{IVec3, Vec2, Vec3};
 
 use super::build::ClothVolume;
 use super::hair_cells::{HairCell, HairCells};
-use crate::design::Yarn;
+use crate::design::{Positions, Yarn};
 use crate::exemplar::hairs::{HAIRLESS, HairPatch, root_step};
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{MajorantWalk, Medium, SYSTEM, Stretch, Voxel};
@@ -33,6 +33,8 @@ pub struct HairLayer<'a> {
     cells: [HairCells; 2],
     /// Extinction of a voxel wholly inside fibre: warp, weft.
     full: [f32; 2],
+    /// Where a patch begins, mm: the first thread is at the corner of one.
+    corner: Vec2,
 }
 
 impl<'a> HairLayer<'a> {
@@ -64,7 +66,12 @@ impl<'a> HairLayer<'a> {
             None => Default::default(),
         };
         let cell_mm = patch.voxel_mm.z * CELL as f32;
+        let size = patch.size_mm();
+        let corner = |threads: &Positions, size: f32| {
+            0.0 - threads.origin_mm().rem_euclid(f64::from(size)) as f32
+        };
         Self {
+            corner: Vec2::new(corner(cloth.ends(), size.x), corner(cloth.picks(), size.y)),
             cloth,
             crowns,
             cells: crowns.map(|[a, b]| {
@@ -186,11 +193,12 @@ impl HairLayer<'_> {
     fn frame(&self, face: usize) -> (Vec3, Vec3) {
         let (low, high) = self.slab(face);
         let scale = self.patch.voxel_mm.recip() / CELL as f32;
+        let corner = self.corner.extend(0.0);
         // The back is the mirror image.
         if face == 0 {
-            (Vec3::new(0.0, 0.0, low), scale)
+            (corner.with_z(low), scale)
         } else {
-            (Vec3::new(0.0, 0.0, high), scale * Vec3::new(1.0, 1.0, -1.0))
+            (corner.with_z(high), scale * Vec3::new(1.0, 1.0, -1.0))
         }
     }
 }
@@ -319,7 +327,8 @@ impl MajorantWalk for HairWalk<'_> {
         let point = self.ray.at(t);
         let over = point.z - layer.surface(face, point);
         let over = if face == 0 { over } else { -over };
-        let place = Vec3::new(point.x, point.y, over + layer.patch.sink_mm) / layer.patch.voxel_mm;
+        let place = point.truncate() - layer.corner;
+        let place = place.extend(over + layer.patch.sink_mm) / layer.patch.voxel_mm;
         // The stretch lies in one cell; rounding may not carry it beside it.
         let within = |place: f32, low: i32, high: i32| {
             let [low, high] = [low, high].map(|cell| (cell * CELL as i32) as f32);

@@ -6,6 +6,7 @@ use glam::{IVec3, Vec3};
 use super::build::ClothVolume;
 use super::levels::series;
 use super::lookup::Crossing;
+use crate::design::Positions;
 use crate::exemplar::{CELL, cell_of};
 use crate::render::{Arrival, MajorantWalk, Medium, PLACE, Stretch, Voxel};
 use crate::scene::{Bounds, Ray};
@@ -52,16 +53,20 @@ impl Medium for ClothVolume {
 
     fn bounds(&self) -> Bounds {
         let (low, high) = self.height_range();
+        let span = |threads: &Positions| {
+            let [from, to] = [0, threads.threads()].map(|thread| threads.start(thread.into()));
+            (from as f32, to as f32)
+        };
         let mut bounds = Bounds {
             min: Vec3::new(-REACH_MM, -REACH_MM, low),
             max: Vec3::new(REACH_MM, REACH_MM, high),
         };
         // Where the design does not repeat, the cloth ends with it.
         if self.lattice.across == crate::design::Repeat::None {
-            (bounds.min.x, bounds.max.x) = (0.0, self.ends.repeat_mm() as f32);
+            (bounds.min.x, bounds.max.x) = span(&self.ends);
         }
         if self.lattice.along == crate::design::Repeat::None {
-            (bounds.min.y, bounds.max.y) = (0.0, self.picks.repeat_mm() as f32);
+            (bounds.min.y, bounds.max.y) = span(&self.picks);
         }
         bounds
     }

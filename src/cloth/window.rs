@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::build::ClothVolume;
-use crate::design::YarnId;
+use crate::design::{Positions, YarnId};
 use crate::synthesis::{Face, Neighbourhood, Side};
 
 /// Most crossings that are made ready: a picture of more is not close enough to need it.
@@ -136,6 +136,15 @@ fn kinds(cells: &[Option<Neighbourhood>], most: usize) -> (Vec<u32>, usize) {
 }
 
 impl ClothVolume {
+    /// The same cloth with positions counted from a place (mm), see [`Positions::seen_from`];
+    /// a window of it is to be made anew.
+    pub fn seen_from(mut self, [x, y]: [f64; 2]) -> Self {
+        self.ends = self.ends.seen_from(x);
+        self.picks = self.picks.seen_from(y);
+        self.window = Window::default().into();
+        self
+    }
+
     /// Makes the crossings of a rectangle of cloth ready (mm), as far as they are not too
     /// many. Pictures are the same with or without it.
     pub fn with_window(mut self, x: Range<f32>, y: Range<f32>) -> Self {
@@ -151,7 +160,7 @@ impl ClothVolume {
     }
 
     fn window_over(&self, x: Range<f32>, y: Range<f32>, margin: i64, most_shifts: usize) -> Window {
-        let first = |positions: &crate::design::Positions, range: &Range<f32>| {
+        let first = |positions: &Positions, range: &Range<f32>| {
             let [from, to] = [range.start, range.end].map(|mm| positions.locate(mm.into()).0);
             (
                 from - margin,
@@ -163,7 +172,7 @@ impl ClothVolume {
             return Window::default();
         }
         let [bx, by, _] = self.grid.block;
-        let threads = |positions: &crate::design::Positions, first: i64, count: usize, voxels| {
+        let threads = |positions: &Positions, first: i64, count: usize, voxels| {
             let thread = |thread| Thread {
                 start: positions.start(thread) as f32,
                 per_mm: voxels as f32 / positions.pitch(thread) as f32,

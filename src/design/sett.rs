@@ -130,6 +130,8 @@ pub struct Positions {
     /// First thread that can own a point of each of as many equal stretches.
     buckets: Vec<u32>,
     per_mm: f64,
+    /// Where positions are counted from.
+    origin_mm: f64,
 }
 
 impl Positions {
@@ -161,7 +163,20 @@ impl Positions {
             starts,
             buckets,
             per_mm,
+            origin_mm: 0.0,
         }
+    }
+
+    /// The same threads with positions counted from a place, mm: near it 32 bits are enough
+    /// for all that is worked out of a position, however far it is from the first thread.
+    pub fn seen_from(mut self, origin_mm: f64) -> Self {
+        self.origin_mm = origin_mm;
+        self
+    }
+
+    /// Where positions are counted from, mm from the start of the first thread.
+    pub fn origin_mm(&self) -> f64 {
+        self.origin_mm
     }
 
     /// Threads in one repeat.
@@ -178,7 +193,8 @@ impl Positions {
     pub fn start(&self, thread: i64) -> f64 {
         let threads = i64::from(self.threads());
         let repeat = thread.div_euclid(threads);
-        repeat as f64 * self.repeat_mm() + self.starts[thread.rem_euclid(threads) as usize]
+        let start = self.starts[thread.rem_euclid(threads) as usize];
+        repeat as f64 * self.repeat_mm() + start - self.origin_mm
     }
 
     /// Width of thread `thread`'s stretch in mm.
@@ -196,6 +212,7 @@ impl Positions {
     /// stretch that is (0..1). Positions that are no number belong to thread 0.
     pub fn locate(&self, mm: f64) -> (i64, f64) {
         let repeat_mm = self.repeat_mm();
+        let mm = mm + self.origin_mm;
         let repeat = (mm / repeat_mm).floor();
         let local = mm - repeat * repeat_mm;
         // Rounding may leave the remainder just outside; the bounds below hold it in.
@@ -253,6 +270,22 @@ mod tests {
             assert!((positions.pitch(thread) - pitch).abs() < 1e-12);
         }
         assert_ne!(positions.locate(positions.start(3) - 1e-6).0, 3);
+    }
+
+    #[test]
+    fn a_place_far_away_is_as_exact_as_one_near_by() {
+        let positions = Density::per_cm(20.0).positions(7);
+        let far = positions.clone().seen_from(1e10);
+        for mm in [-3.26f32, 0.0, 0.26, 1.99] {
+            let (thread, through) = positions.locate(1e10 + f64::from(mm));
+            let (same, just) = far.locate(f64::from(mm));
+            assert_eq!(thread, same);
+            assert!((through - just).abs() < 1e-4);
+            let back = far.start(same) + just * far.pitch(same);
+            assert!((back - f64::from(mm)).abs() < 1e-4, "{back}");
+        }
+        // Control: 32 bits would not tell places of the same metre apart.
+        assert_eq!(1e10f32 + 0.26, 1e10);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::exposure::{Engine, Exposure, Pass, byte};
 use super::prepare::coloured;
 use super::renderer::{Making, Renderer};
 use super::request::{LightChoice, StillReport};
-use super::shot::{Shot, camera, lights};
+use super::shot::{Shot, camera, lights, origin};
 use super::{StillError, StillRequest};
 use crate::cloth::colour::colours_on_top;
 use crate::cloth::{FaceRelief, FaceTable, TEXELS, Texel, YarnClasses};
@@ -330,7 +330,9 @@ impl FirstSight {
         } else {
             Vec::new()
         };
-        let (ends, picks) = (design.end_positions(), design.pick_positions());
+        let [x, y] = origin(design, request);
+        let ends = design.end_positions().seen_from(x);
+        let picks = design.pick_positions().seen_from(y);
         let pitch = |positions: &Positions| positions.repeat_mm() / f64::from(positions.threads());
         let pixels = camera.pixels_per_mm() * pitch(&ends).min(pitch(&picks)) as f32;
         Ok(Sight {

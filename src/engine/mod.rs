@@ -84,6 +84,9 @@ pub enum StillError {
     /// A width of cloth that is not a length.
     #[error("a picture {0} mm wide cannot be made; give {range} mm", range = limits::in_words(&limits::PICTURE_MM))]
     Width(f32),
+    /// A place that no cloth reaches.
+    #[error("a picture round {0},{1} mm cannot be made; give {range} mm each way", range = limits::in_words(&limits::CENTRE_MM))]
+    Centre(f32, f32),
     /// A colourway that the design does not have.
     #[error(transparent)]
     Colourway(#[from] ColourwayError),

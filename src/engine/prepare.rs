@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::shot::{camera, in_view};
+use super::shot::{camera, in_view, origin};
 use super::{StillError, StillRequest};
 use crate::cloth::{self, Followed, PreparedCloth};
 use crate::design::{Design, Positions, WeavePattern};
@@ -30,13 +30,14 @@ pub fn coloured(design: &Arc<Design>, request: &StillRequest) -> Result<Arc<Desi
 /// When the request is not usable.
 fn extent(design: &Design, request: &StillRequest) -> Result<Stretch, StillError> {
     let (x, y) = in_view(&camera(design, request)?, request);
+    let [from_x, from_y] = origin(design, request);
     let threads = |positions: Positions, range: Range<f32>| {
         let [from, to] = [range.start, range.end].map(|mm| positions.locate(mm.into()).0);
         from..to.saturating_add(1)
     };
     Ok(Stretch {
-        ends: threads(design.end_positions(), x),
-        picks: threads(design.pick_positions(), y),
+        ends: threads(design.end_positions().seen_from(from_x), x),
+        picks: threads(design.pick_positions().seen_from(from_y), y),
     })
 }
 

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::StillError;
 use super::developing::Developing;
 use super::request::{LightChoice, StillRequest};
-use crate::design::Design;
+use crate::design::{Design, Positions};
 use crate::film::{Denoise, Pixel, Tone};
 use crate::formats::exr;
 use crate::limits;
@@ -82,12 +82,32 @@ pub(super) fn lights(choice: &LightChoice, pose: Pose) -> Result<LightRig, Still
     Ok(rig.on(pose))
 }
 
+/// Positions are counted from a multiple of this, mm: so near to it, 32 bits tell places a
+/// hundredth of a fibre apart.
+const NEAR_MM: f64 = 1000.0;
+
+/// The point of the cloth in the middle of a picture of a design, mm.
+fn looked_at(design: &Design, request: &StillRequest) -> [f64; 2] {
+    let half = |positions: Positions| f64::from(0.5 * positions.repeat_mm() as f32);
+    match request.centre_mm {
+        Some(centre) => centre.map(f64::from),
+        None => [half(design.end_positions()), half(design.pick_positions())],
+    }
+}
+
+/// The place that the positions of a picture of a design are counted from, by its cloth as by
+/// its [`camera`], mm: the first crossing, unless that is far away.
+pub(super) fn origin(design: &Design, request: &StillRequest) -> [f64; 2] {
+    looked_at(design, request).map(|mm| match mm {
+        near if near.abs() <= NEAR_MM => 0.0,
+        far => (far / NEAR_MM).round() * NEAR_MM,
+    })
+}
+
+/// The camera of a picture of a design, with positions counted from its [`origin`].
 pub(super) fn camera(design: &Design, request: &StillRequest) -> Result<Camera, StillError> {
-    let [x, y] = [
-        design.end_positions().repeat_mm(),
-        design.pick_positions().repeat_mm(),
-    ]
-    .map(|repeat| 0.5 * repeat as f32);
+    let (at, origin) = (looked_at(design, request), origin(design, request));
+    let [x, y] = [0, 1].map(|axis| (at[axis] - origin[axis]) as f32);
     let usual = usual_width_mm(request.view, design);
     camera_at(request, Vec3::new(x, y, 0.0), usual)
 }
@@ -104,6 +124,8 @@ pub fn place_on(
         return None;
     }
     let cameras = [camera(design, before).ok()?, camera(design, request).ok()?];
+    let origins = [origin(design, before), origin(design, request)];
+    let moved = [0, 1].map(|axis| (origins[1][axis] - origins[0][axis]) as f32);
     let at = |camera: &Camera, x: f32, y: f32| camera.ray(x, y).origin.truncate();
     let [before, request] = cameras;
     let corner = at(&before, 0.0, 0.0);
@@ -111,7 +133,7 @@ pub fn place_on(
         at(&before, 1.0, 0.0) - corner,
         at(&before, 0.0, 1.0) - corner,
     );
-    let offset = at(&request, 0.0, 0.0) - corner;
+    let offset = at(&request, 0.0, 0.0) - corner + Vec2::from_array(moved);
     let step = at(&request, 1.0, 0.0) - at(&request, 0.0, 0.0);
     let pixels = |vector: glam::Vec2, along: glam::Vec2| vector.dot(along) / along.length_squared();
     let scale = pixels(step, across);
@@ -120,13 +142,9 @@ pub fn place_on(
     sound.then_some((place, scale))
 }
 
-/// The camera of a request that looks at `middle` and shows `usual` mm where the request
+/// The camera of a request that looks at `target` and shows `usual` mm where the request
 /// does not say.
-pub(super) fn camera_at(
-    request: &StillRequest,
-    middle: Vec3,
-    usual: f32,
-) -> Result<Camera, StillError> {
+fn camera_at(request: &StillRequest, target: Vec3, usual: f32) -> Result<Camera, StillError> {
     let (width, height) = (request.width, request.height);
     if !limits::PICTURE_SIDE.contains(&width) || !limits::PICTURE_SIDE.contains(&height) {
         return Err(StillError::Size(width, height));
@@ -135,8 +153,11 @@ pub(super) fn camera_at(
     if !limits::PICTURE_MM.contains(&width_mm) {
         return Err(StillError::Width(width_mm));
     }
-    let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
-    let target = Vec3::new(x, y, middle.z);
+    if let Some([x, y]) = request.centre_mm
+        && ![x, y].iter().all(|mm| limits::CENTRE_MM.contains(mm))
+    {
+        return Err(StillError::Centre(x, y));
+    }
     let camera = match request.eye {
         None => request.view.camera(target, width_mm, width, height),
         Some(heading) => {
@@ -162,7 +183,12 @@ pub(super) fn camera_at(
 /// The camera of a request over a box: its middle and its width, unless the request says.
 pub(super) fn camera_over(bounds: Bounds, request: &StillRequest) -> Result<Camera, StillError> {
     let middle = (bounds.min + bounds.max) * 0.5;
-    camera_at(request, middle, bounds.max.x - bounds.min.x)
+    let [x, y] = request.centre_mm.unwrap_or([middle.x, middle.y]);
+    camera_at(
+        request,
+        Vec3::new(x, y, middle.z),
+        bounds.max.x - bounds.min.x,
+    )
 }
 
 /// Bytes a pixel of a picture that is shown and written: colours, samples, encoded bytes.

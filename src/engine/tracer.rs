@@ -7,7 +7,7 @@ use super::exposure::{Engine, Exposure, Pass};
 use super::prepare::prepare;
 use super::renderer::{Making, Renderer};
 use super::request::{StillReport, StillRequest};
-use super::shot::{Shot, camera, camera_over, in_view};
+use super::shot::{Shot, camera, camera_over, in_view, origin};
 use crate::cloth::{ClothVolume, HairLayer, PreparedCloth, REACH_MM};
 use crate::design::Design;
 use crate::film::Film;
@@ -94,7 +94,9 @@ impl Engine for PreparedCloth {
 fn before(prepared: &PreparedCloth, shot: &Shot<'_>) -> Result<(Camera, ClothVolume), StillError> {
     let camera = camera(prepared.design(), shot.request)?;
     let (x, y) = in_view(&camera, shot.request);
-    let cloth = prepared.cloth().clone().with_window(x, y);
+    let origin = origin(prepared.design(), shot.request);
+    let cloth = prepared.cloth().clone().seen_from(origin);
+    let cloth = cloth.with_window(x, y);
     Ok((camera, cloth))
 }
 
@@ -207,7 +209,7 @@ fn end_in_view(camera: &Camera, bounds: &Bounds, request: &StillRequest) -> Opti
     let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
     corners.into_iter().any(|(x, y)| beyond(x, y)).then(|| {
         format!(
-            "the cloth is made {:.0} m to each side of its first crossing: the picture shows \
+            "the cloth is made {:.0} m to each side of what is looked at: the picture shows \
              where it ends; show less with --mm",
             1e-3 * REACH_MM
         )

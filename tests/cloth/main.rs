@@ -7,7 +7,6 @@ mod colour;
 mod edit;
 mod families;
 mod hairs;
-mod hard_cases;
 mod interlacing;
 mod levels;
 mod majorants;

@@ -296,8 +296,16 @@ fn edit(dice: &mut Dice, document: &Document) -> Edit {
     }
 }
 
+/// Designs that are edited; more where `PICKGLASS_LONG` says that there is time.
+fn how_many() -> u32 {
+    match std::env::var_os("PICKGLASS_LONG") {
+        Some(_) => 10_000,
+        None => 400,
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(how_many()))]
 
     #[test]
     fn undo_is_exact_and_the_drawdown_is_up_to_date(seed in any::<u64>(), kind in 0u32..4) {

@@ -6,8 +6,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::mutation::mutated;
 use pickglass::formats::{LoadOptions, Place, SheetError, dbw, dtx, jc5, load_bytes, wpo};
+use pickglass::selftest::damaged;
 use proptest::prelude::*;
 
 fn fixtures() -> Vec<(String, Vec<u8>)> {
@@ -115,7 +115,7 @@ fn mutated_files_give_an_answer() {
     let (mut read, rounds) = (0, 1500);
     for (index, (_, source)) in sources.iter().enumerate() {
         for round in 0..rounds {
-            read += usize::from(survives(&mutated(
+            read += usize::from(survives(&damaged(
                 source,
                 (index as u64) << 32 | round,
                 &PIECES,

@@ -4,8 +4,6 @@
 mod image_files;
 #[path = "../common/memory/mod.rs"]
 mod memory;
-#[path = "../common/mutation/mod.rs"]
-mod mutation;
 
 mod collection;
 mod fields;

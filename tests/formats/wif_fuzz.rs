@@ -5,10 +5,10 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::mutation::mutated;
 use pickglass::design::{Design, YarnMap};
 use pickglass::formats::{FormatError, LoadOptions, load_bytes, ron, wif};
 use pickglass::presets;
+use pickglass::selftest::damaged;
 use proptest::prelude::*;
 
 fn fixtures() -> Vec<(PathBuf, Vec<u8>)> {
@@ -114,7 +114,7 @@ fn mutated_drafts_and_designs_give_an_answer() {
     let rounds = 300;
     for (index, source) in sources.iter().enumerate() {
         for round in 0..rounds {
-            let bytes = mutated(source, (index as u64) << 32 | round, &PIECES);
+            let bytes = damaged(source, (index as u64) << 32 | round, &PIECES);
             read += usize::from(survives(&bytes));
         }
     }
@@ -127,7 +127,7 @@ fn mutated_drafts_and_designs_give_an_answer() {
 fn what_is_read_can_be_written_and_read_again() {
     for (index, (_, source)) in fixtures().iter().enumerate() {
         for round in 0..60 {
-            let bytes = mutated(source, (index as u64) << 32 | round | 1 << 20, &PIECES);
+            let bytes = damaged(source, (index as u64) << 32 | round | 1 << 20, &PIECES);
             let Ok(first) = wif::read(&bytes, "x") else {
                 continue;
             };

@@ -3,12 +3,15 @@
 use std::sync::Arc;
 
 use pickglass::design::Design;
-use pickglass::engine::{self, Engine, LightChoice, StillRequest, Stop};
+use pickglass::engine::{self, Engine, LightChoice, Still, StillRequest, Stop};
 use pickglass::exemplar::ExemplarStore;
 use pickglass::job::Job;
 use pickglass::needs::{self, Need, Needs};
-use pickglass::plan::{Decider, Effect};
+use pickglass::plan::{Decider, Effect, Subject};
 use pickglass::presets;
+use pickglass::random::Random;
+use pickglass::render::Counters;
+use pickglass::scene::{PRESET_NAMES, View};
 
 fn design(name: &str) -> Arc<Design> {
     let design = presets::design(name).expect("a name");
@@ -49,11 +52,15 @@ fn need(needs: &Needs, effect: Effect) -> &Need {
     all.find(|need| need.effect == effect).expect("an effect")
 }
 
+fn still(engine: &dyn Engine, design: &Arc<Design>, request: &StillRequest) -> Still {
+    let plan = engine::reference().plan(request, Subject::Cloth);
+    let shot = engine::Shot::new(request, plan.expect("a plan")).expect("a shot");
+    engine::draw(engine, design, &shot, &Job::new(), &mut |_| {}).expect("a still")
+}
+
 /// Mean luminance of the picture.
 fn light(engine: &dyn Engine, design: &Arc<Design>, request: &StillRequest) -> f64 {
-    let plan = engine::reference().plan(request, pickglass::plan::Subject::Cloth);
-    let shot = engine::Shot::new(request, plan.expect("a plan")).expect("a shot");
-    let still = engine::draw(engine, design, &shot, &Job::new(), &mut |_| {}).expect("a still");
+    let still = still(engine, design, request);
     let pixels = still.film.pixels();
     pixels.iter().map(|pixel| pixel.luminance()).sum::<f64>() / pixels.len() as f64
 }
@@ -109,4 +116,139 @@ fn what_is_left_out_is_within_its_bound() {
     // The order is the least that will do: with less leave, it is larger.
     let (_, closer, _) = settled(&design, &asked, 0.01);
     assert!(closer.settings.render.max_order > order);
+}
+
+/// A scene that nobody chose: a design, near or far, in any light.
+fn scene(number: u64) -> (Arc<Design>, StillRequest, f64) {
+    let mut random = Random::new(60, number, 0);
+    let mut below = |sides: usize| (random.bits() % sides as u64) as usize;
+    let names: Vec<&str> = presets::names().collect();
+    // Each preset in turn, and each light.
+    let design = design(names[number as usize % names.len()]);
+    let asked = StillRequest {
+        view: View::ALL[below(View::ALL.len())],
+        width_mm: Some([1.5, 4.0, 10.0, 30.0, 90.0][below(5)]),
+        seed: number,
+        ..request(PRESET_NAMES[number as usize % PRESET_NAMES.len()])
+    };
+    let tolerance = [0.005, 0.01, 0.02, 0.05][below(4)];
+    (design, asked, tolerance)
+}
+
+/// What a picture lacks of another of the same paths, block by block of 8 × 8 pixels, relative
+/// to the light there.
+fn lacks(all: &Still, some: &Still) -> Vec<f64> {
+    const DARK: f64 = 0.01;
+    let (width, height) = (all.film.width(), all.film.height());
+    let mut lacks = Vec::new();
+    for y in (0..height).step_by(8) {
+        for x in (0..width).step_by(8) {
+            let of = |still: &Still| -> f64 {
+                let pixels = (0..8).flat_map(|down| (0..8).map(move |right| (right, down)));
+                let light = pixels.map(|(right, down)| still.film.pixel(x + right, y + down));
+                light.map(|pixel| pixel.luminance()).sum::<f64>() / 64.0
+            };
+            let (all, some) = (of(all), of(some));
+            lacks.push((all - some).abs() / (all + DARK));
+        }
+    }
+    lacks
+}
+
+/// What the 95th percentile is above of, in 95 of 100 samples: an order statistic.
+fn lower_percentile(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    let (n, p) = (values.len(), 0.95f64);
+    // The chance that fewer than k of them lie below the percentile.
+    let mut chance = (1.0 - p).powi(n as i32);
+    let mut below = 0.0;
+    for k in 0..n {
+        if below + chance > 0.05 {
+            return values[k.saturating_sub(1)];
+        }
+        below += chance;
+        chance *= (n - k) as f64 / (k + 1) as f64 * p / (1.0 - p);
+    }
+    values[n - 1]
+}
+
+#[test]
+fn a_percentile_is_above_its_lower_limit_as_often_as_is_said() {
+    let holds = (0..400u64).filter(|sample| {
+        let mut random = Random::new(4, *sample, 0);
+        let values: Vec<f64> = (0..48).map(|_| random.uniform().into()).collect();
+        lower_percentile(&values) <= 0.95
+    });
+    let holds = holds.count();
+    assert!((370..400).contains(&holds), "{holds} of 400");
+}
+
+#[test]
+fn bounds_hold_in_scenes_that_nobody_chose() {
+    let count = match std::env::var_os("PICKGLASS_LONG") {
+        Some(_) => 60,
+        None => 2,
+    };
+    let mut faster = 0;
+    for number in 0..count {
+        let (design, asked, tolerance) = scene(number);
+        let (engine, followed, needs) = settled(&design, &asked, tolerance);
+        assert!(needs.left_out <= tolerance, "{number}: {needs:?}");
+        // The same paths, until one of them ends.
+        let all = still(&*engine, &design, &asked);
+        let some = still(&*engine, &design, &followed);
+        let limit = lower_percentile(&lacks(&all, &some));
+        let seconds = [&all, &some].map(|still| still.report.total_seconds);
+        println!(
+            "{number} {} {:?} {}: {limit:.4} of {:.4}, tolerance {tolerance}, {:.2} times faster",
+            design.name,
+            asked.view,
+            asked.width_mm.unwrap_or_default(),
+            needs.left_out,
+            seconds[0] / seconds[1]
+        );
+        assert!(
+            limit <= needs.left_out + 1e-6,
+            "{number}: {limit} {needs:?}"
+        );
+        faster += usize::from(seconds[0] > 1.5 * seconds[1]);
+        if number == 0 {
+            // The control: whoever leaves out shadows leaves out more than any tolerance.
+            let mut forced = followed.clone();
+            forced.effects.changes.push((Effect::Shadows, false));
+            let forced = still(&*engine, &design, &forced);
+            assert!(lower_percentile(&lacks(&all, &forced)) > 0.05);
+        }
+    }
+    println!("{faster} of {count} are half as fast again");
+}
+
+#[test]
+fn what_is_off_is_no_work() {
+    let design = design("tweed");
+    let mut asked = request("day");
+    asked.settings = asked.settings.at_level(3);
+    let counted = |off: &[Effect]| -> Counters {
+        let mut request = asked.clone();
+        (request.effects.changes).extend(off.iter().map(|effect| (*effect, false)));
+        let (renderer, job) = (engine::reference(), Job::new());
+        let engine = renderer
+            .engine(&design, &request, &ExemplarStore::user(), &job)
+            .expect("cloth");
+        let plan = renderer.plan(&request, Subject::Cloth).expect("a plan");
+        let shot = engine::Shot::new(&request, plan).expect("a shot");
+        let corners = [[0, 0], [16, 8], [32, 24]];
+        let seen = engine.look_at(&shot, &corners, 16, &job).expect("a look");
+        seen.expect("it follows paths").counters
+    };
+    let all = counted(&[]);
+    assert!(all.shadow_rays > 0 && all.scatterings > all.paths);
+    assert_eq!(counted(&[Effect::Shadows]).shadow_rays, 0);
+    let single = counted(&[Effect::Multiple]);
+    assert!(single.scatterings <= single.paths);
+    // Whatever is met counts as one lookup: hairs are a medium of their own.
+    assert!(counted(&[Effect::Hairs]).lookups < all.lookups);
+    let none = counted(Effect::ALL);
+    assert!(none.shadow_rays == 0 && none.scatterings <= none.paths);
 }

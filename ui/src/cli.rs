@@ -77,6 +77,8 @@ pub enum Command {
     Effects(Box<EffectsArgs>),
     /// Measure what each setting of each dial costs in time and how wrong it is
     Accuracy(Box<AccuracyArgs>),
+    /// Try hard cases on this machine: does everything hold here as well?
+    Selftest(SelftestArgs),
     /// The weave library: names, repeats and what they are for
     Weaves(WeavesArgs),
     /// Write a window of the cloth as voxels, or its yarns as geometry
@@ -107,6 +109,17 @@ pub struct WeavesArgs {
     /// List only one family
     #[arg(long, value_name = "FAMILY", conflicts_with = "name")]
     pub family: Option<String>,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = help::SELFTEST)]
+pub struct SelftestArgs {
+    /// Only these cases
+    #[arg(value_name = "CASE", value_parser = values::hard_case())]
+    pub cases: Vec<String>,
     /// Print one JSON object on standard output
     #[arg(long)]
     pub json: bool,

@@ -100,6 +100,7 @@ pub enum Command {
     ResetLayout,
     Palette,
     Shortcuts,
+    MachineCheck,
     /// Changes the weave, or what is selected of it.
     Weave(WeaveCommand),
     /// Looks at the cloth.
@@ -410,6 +411,7 @@ const BELOW: &[Row] = &[
 
     row(Command::Palette, Menu::Help, "Find a command…", "Type a few letters of what you want to do", &[ctrl(Key::K)]),
     row(Command::Shortcuts, Menu::Help, "Keyboard shortcuts", "Show this table", &[plain(Key::F1)]),
+    apart(row(Command::MachineCheck, Menu::Help, "Check this machine…", "Try hard cases: whether everything comes out here as it should", &[])),
 ];
 
 /// The row of a command.

@@ -67,6 +67,13 @@ With --json: dials[]{name, unit, reference, current, knee, settings[]{value, sec
 seconds_interval, processor_seconds, error, error_interval, delta_e, ssim, measured}}, design,
 picture, machine{system, threads} …";
 
+/// What becomes of a case that does not hold, and what `selftest --json` says.
+pub const SELFTEST: &str = "\
+Cases of designs and views are tried with every renderer. Where a case does not hold the exit
+status is 1.
+
+With --json: cases[]{name, about, ok, seen, seconds}.";
+
 /// What a volume is, and what `volume --json` says.
 pub const VOLUME: &str = "\
 The bytes are said before anything is made.

@@ -12,6 +12,7 @@ use pickglass::formats::yarns;
 use pickglass::limits;
 use pickglass::plan::{self, Dial, Effect, EffectBase, EffectChoice, Settings};
 use pickglass::scene::PRESET_NAMES;
+use pickglass::selftest::CASES;
 use strum::{EnumMessage, VariantArray};
 
 use pickglass::engine::{Heading, LightChoice};
@@ -244,6 +245,14 @@ where
     // The parser before has let only these names through.
     PossibleValuesParser::new(values.collect::<Vec<_>>())
         .map(|name| name.parse().unwrap_or(T::VARIANTS[0]))
+}
+
+/// The name of a hard case; the help says what each tries.
+pub fn hard_case() -> PossibleValuesParser {
+    let values = CASES
+        .iter()
+        .map(|case| PossibleValue::new(case.name).help(case.about));
+    PossibleValuesParser::new(values.collect::<Vec<_>>())
 }
 
 /// `dial=value`.

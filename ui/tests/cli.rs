@@ -105,6 +105,38 @@ fn check_says_what_a_mill_asks() {
 }
 
 #[test]
+fn hard_cases_are_tried_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let two = ["selftest", "threads", "rays-that-are-none"];
+    let said = pickglass(folder.path(), &two);
+    assert!(said.status.success(), "{said:?}");
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert_eq!(
+        said.lines().filter(|line| line.starts_with("ok ")).count(),
+        2
+    );
+    assert!(said.contains("2 of 2 hold"), "{said}");
+    let report = json(&pickglass(
+        folder.path(),
+        &["selftest", "threads", "--json"],
+    ));
+    has_keys(
+        &report,
+        &[
+            "cases.0.name",
+            "cases.0.about",
+            "cases.0.ok",
+            "cases.0.seen",
+            "cases.0.seconds",
+        ],
+    );
+    assert_eq!(report["cases"].as_array().expect("cases").len(), 1);
+    assert_eq!(report["cases"][0]["ok"], true);
+    let text = refused(&pickglass(folder.path(), &["selftest", "glow"]), 2);
+    assert!(text.contains("glow"), "{text}");
+}
+
+#[test]
 fn the_weave_library_is_listed_and_drawn() {
     let folder = tempfile::tempdir().expect("a folder");
     let all = json(&pickglass(folder.path(), &["weaves", "--json"]));

@@ -6,6 +6,7 @@ mod check;
 mod convert;
 mod effects;
 mod posterize;
+mod selftest;
 mod shell;
 mod still;
 mod synthesize;
@@ -31,6 +32,7 @@ pub fn run(cli: Cli, begun: Instant) -> anyhow::Result<()> {
         Some(Command::Still(args)) => still::run(&args, begun),
         Some(Command::Effects(args)) => effects::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
+        Some(Command::Selftest(args)) => selftest::run(&args),
         Some(Command::Weaves(args)) => weaves::run(&args),
         Some(Command::Volume(args)) => volume::run(&args),
         Some(Command::Completions(args)) => shell::completions(&args),

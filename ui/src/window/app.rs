@@ -21,6 +21,7 @@ use super::files::Files;
 use super::import::Import;
 use super::layout::Layout;
 use super::lost::{Guard, Restarts};
+use super::machine_check::MachineCheck;
 use super::menu::{self, Choice, Situation};
 use super::palette::CommandPalette;
 use super::panes::{Pane, Panes};
@@ -66,6 +67,7 @@ pub struct App {
     pub(super) settings_file: SettingsFile,
     pub(super) show_shortcuts: bool,
     pub(super) settings_form: Option<SettingsForm>,
+    pub(super) machine_check: Option<MachineCheck>,
     /// Where exemplars are kept.
     pub(super) store: ExemplarStore,
     keys: Keys,
@@ -119,6 +121,7 @@ impl App {
             settings_file: options.settings,
             show_shortcuts: false,
             settings_form: None,
+            machine_check: None,
             store,
             keys: Keys::default(),
             pictured: false,
@@ -270,6 +273,7 @@ impl App {
             &Status {
                 design: document.map(|document| document.design().as_ref()),
                 shown: self.preview.pane.shown.as_ref(),
+                foretold: self.preview.pane.foretold(),
                 phase: &phase,
                 building: self.preview.building(),
                 paused: self.preview.paused,
@@ -455,6 +459,8 @@ impl App {
         }
         let form = self.settings_form.take();
         self.settings_form = form.and_then(|mut form| form.show(&ctx).then_some(form));
+        let check = self.machine_check.take();
+        self.machine_check = check.and_then(|mut check| check.show(&ctx).then_some(check));
         self.act(&ctx, actions);
         self.autosave.note(self.session.as_ref());
         self.count_frame(&ctx);

@@ -10,6 +10,7 @@ use egui::{
 
 use super::draft::picture_uv;
 use super::focus;
+use super::forecast::Forecast;
 use super::pace::Measured;
 use super::view::{ClothView, scale_bar};
 use super::worker::{Fibres, Picture};
@@ -40,6 +41,7 @@ pub struct Shown {
 #[derive(Default)]
 pub struct ClothPane {
     pub shown: Option<Shown>,
+    forecast: Forecast,
 }
 
 /// What is marked on the cloth: a crossing's left, lower, right and upper border, mm.
@@ -59,8 +61,20 @@ impl ClothPane {
         Measured::of(pixels, shown.spp, shown.seconds, shown.error)
     }
 
+    /// When the picture that is shown will be how good, and how good forecasts were so far.
+    pub fn foretold(&self) -> Vec<String> {
+        let shown = self.shown.as_ref();
+        let words = shown.and_then(|shown| self.forecast.words(shown.seconds));
+        words.into_iter().chain(self.forecast.record()).collect()
+    }
+
     /// Takes a newer picture.
     pub fn take(&mut self, ctx: &egui::Context, picture: Picture) {
+        if let (true, Fibres::Full, Some(error)) =
+            (picture.full_size, picture.fibres, picture.error)
+        {
+            (self.forecast).note(picture.generation, picture.seconds, error);
+        }
         let image = Arc::new(picture.image);
         let data = || egui::ImageData::Color(Arc::clone(&image));
         let texture = match self.shown.take() {

@@ -67,6 +67,7 @@ impl Situation<'_> {
             | Command::ResetLayout
             | Command::Settings
             | Command::Palette
+            | Command::MachineCheck
             | Command::Shortcuts => true,
             Command::Undo => self.undo.is_some(),
             Command::Redo => self.redo.is_some(),

@@ -8,10 +8,11 @@
 //! |---|---|
 //! | `draft`, `preview`, `cloth`, `worker` | the pane one paints in; the cloth, and the threads that draw it |
 //! | `panes`, `layout`, `dividers` | the other panes, a row each, and where they lie |
-//! | `menu`, `palette`, `tools`, `status`, `toasts`, `focus`, `icons` | round them |
+//! | `menu`, `palette`, `tools`, `status`, `forecast`, `toasts`, `focus`, `icons` | round them |
 //! | `start`, `session`, `settings`, `autosave`, `lost`, `leaving` | what is open, remembered and recovered |
 //! | `files`, `import`, `export`, `volume`, `dialog`, `task` | files, on further threads, so that the window never waits |
 //! | `forms`, `asking`, `typing`, `image_form`, `settings_form` | what asks |
+//! | `machine_check` | hard cases, tried here |
 
 mod act;
 mod action;
@@ -27,6 +28,7 @@ mod draft;
 mod export;
 mod files;
 mod focus;
+mod forecast;
 mod forms;
 mod icons;
 mod image_form;
@@ -35,6 +37,7 @@ mod laid;
 mod layout;
 mod leaving;
 mod lost;
+mod machine_check;
 mod menu;
 mod pace;
 mod palette;

@@ -7,6 +7,7 @@ use pickglass::engine::LightChoice;
 use super::app::App;
 use super::asking::Next;
 use super::cloth::sheet::Kind as SheetKind;
+use super::machine_check::MachineCheck;
 use super::panes::Pane;
 use super::settings_form::SettingsForm;
 use crate::command_table::{Command, Switch, ZoomCommand};
@@ -72,6 +73,7 @@ impl App {
             Command::Palette => self.palette.open(),
             Command::Settings => self.settings_form = Some(SettingsForm::new(&self.store)),
             Command::Shortcuts => self.show_shortcuts = true,
+            Command::MachineCheck => self.machine_check = Some(MachineCheck::start(ctx)),
             Command::Show(pane) => self.layout.bring(pane),
             Command::ResetLayout => self.layout.reset(),
             Command::NextPane => {

@@ -364,3 +364,18 @@ fn whatever_has_the_keyboard_is_seen() {
         assert!(seen > 30, "{seen}");
     }
 }
+
+#[test]
+fn hard_cases_are_tried_and_given_up_by_key() {
+    let mut window = still_window("oxford");
+    press_with(&mut window, Modifiers::COMMAND, Key::K);
+    window.event(egui::Event::Text("check this machine".to_owned()));
+    window.run_steps(2);
+    press(&mut window, Key::Enter);
+    wait_for(&mut window, "a case", |window| {
+        says(window, "walks ended and counted")
+    });
+    assert!(shows(&window, "rays-that-are-none"));
+    press(&mut window, Key::Escape);
+    assert!(!shows(&window, "rays-that-are-none"));
+}

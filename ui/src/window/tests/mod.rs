@@ -13,6 +13,7 @@ mod large;
 mod opening;
 mod painting;
 mod pictures;
+mod random_events;
 mod slow_frames;
 mod states;
 mod times;

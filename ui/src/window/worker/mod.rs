@@ -12,6 +12,8 @@ mod cloths;
 mod drawing;
 #[cfg(test)]
 mod never_worse;
+#[cfg(test)]
+mod stalls;
 mod threads;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
