@@ -144,7 +144,7 @@ impl Axis {
                     request.stop.spp = Some(request.settings.render.spp);
                 }
             }
-            Self::Effect(effect) => request.effects.changes.push((*effect, value == SWITCH[1])),
+            Self::Effect(effect) => request.effects.switch(*effect, Some(value == SWITCH[1])),
             Self::Renderer => asked.renderer = engine::renderer(value)?,
         }
         Ok(asked)

@@ -9,7 +9,7 @@ use super::difference::Pixels;
 use super::seen::Shown;
 use crate::cloth::ClothSettings;
 use crate::design::Design;
-use crate::engine::{self, Engine, Shot, StillRequest, Stop};
+use crate::engine::{self, Engine, Shot, StillRequest};
 use crate::exemplar::ExemplarStore;
 use crate::film::Tone;
 use crate::formats::png::{self, Metadata};
@@ -55,19 +55,9 @@ pub struct Exposing {
     pub spp: u32,
 }
 
-/// The piece of a picture that is looked at: its middle, at its own scale. A slanting view of
-/// a piece is the same view of less cloth.
+/// The piece of a picture that is looked at: its middle, at its own scale.
 pub fn piece(design: &Design, request: &StillRequest) -> StillRequest {
-    let (width, height) = (request.width.min(PIECE[0]), request.height.min(PIECE[1]));
-    let whole = request.width_mm;
-    let whole = whole.unwrap_or_else(|| engine::usual_width_mm(request.view, design));
-    StillRequest {
-        width,
-        height,
-        width_mm: Some(whole * width as f32 / request.width as f32),
-        stop: Stop::default(),
-        ..request.clone()
-    }
+    engine::middle(design, request, PIECE)
 }
 
 impl<'d> Studio<'d> {

@@ -36,7 +36,7 @@ pub use prepare::{check_view, coloured, covers, follow, prepare, prepare_woven};
 pub use renderer::Renderer;
 pub use request::{Heading, LightChoice, StillReport, StillRequest, Stop};
 pub use sheet::{ALL_COLOURWAYS, AS_DESIGNED, Sheet, SheetPlace, render_sheet};
-pub use shot::{Shot, place_on, usual_width_mm};
+pub use shot::{Shot, middle, place_on, usual_width_mm};
 pub use standing::Standing;
 pub use still::{Settle, Still, draw, render, render_settled, render_still};
 pub use table::{RENDERERS, reference, renderer};

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::StillError;
 use super::developing::Developing;
-use super::request::{LightChoice, StillRequest};
+use super::request::{LightChoice, StillRequest, Stop};
 use crate::design::{Design, Positions};
 use crate::film::{Denoise, Pixel, Tone};
 use crate::formats::exr;
@@ -64,6 +64,21 @@ pub fn usual_width_mm(view: View, design: &Design) -> f32 {
         View::Close => pitch * 9.0,
         View::Oblique | View::Grazing => pitch * 24.0,
         View::Face | View::Back => (pitch * design.ends() as f32).clamp(pitch * 24.0, pitch * 72.0),
+    }
+}
+
+/// The middle of a picture at its own scale, at most so many pixels across and down. A slanting
+/// view of it is the same view of less cloth.
+pub fn middle(design: &Design, request: &StillRequest, most: [u32; 2]) -> StillRequest {
+    let (width, height) = (request.width.min(most[0]), request.height.min(most[1]));
+    let whole = request.width_mm;
+    let whole = whole.unwrap_or_else(|| usual_width_mm(request.view, design));
+    StillRequest {
+        width,
+        height,
+        width_mm: Some(whole * width as f32 / request.width as f32),
+        stop: Stop::default(),
+        ..request.clone()
     }
 }
 

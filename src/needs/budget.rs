@@ -5,7 +5,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use super::block_change::{common, relative};
-use super::settling::Eye;
+use super::settling::{Eye, some_of};
 use crate::engine::{self, Engine, Renderer, StillError, StillRequest, Stop};
 use crate::film;
 use crate::job::Job;
@@ -85,9 +85,7 @@ pub fn afford(
 ) -> Result<Option<(StillRequest, Promise)>, StillError> {
     let mut eye = Eye::new(renderer, request, job);
     let all = std::mem::take(&mut eye.corners);
-    // Every so many blocks: still from all over the picture.
-    let step = all.len().div_ceil(FIRST.1).max(1);
-    eye.corners = all.iter().copied().step_by(step).collect();
+    eye.corners = some_of(&all, FIRST.1);
     // What is made at the first look is no part of a path's time.
     if eye.look(engine, request, 1, &|_| {})?.is_none() {
         return Ok(None);

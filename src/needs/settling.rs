@@ -70,6 +70,12 @@ impl<'e> Eye<'e> {
         }
     }
 
+    /// The same with so many blocks at most, still from all over the picture.
+    pub fn at_most(mut self, blocks: usize) -> Self {
+        self.corners = some_of(&self.corners, blocks);
+        self
+    }
+
     /// What a plan of a picture comes to; `None` where the engine follows no paths. `alter` may
     /// change the shot.
     pub fn look(
@@ -84,6 +90,12 @@ impl<'e> Eye<'e> {
         alter(&mut shot);
         engine.look_at(&shot, &self.corners, spp, self.job)
     }
+}
+
+/// Every so many of blocks, so that there are no more than `most`.
+pub(super) fn some_of(corners: &[[u32; 2]], most: usize) -> Vec<[u32; 2]> {
+    let step = corners.len().div_ceil(most.max(1)).max(1);
+    corners.iter().copied().step_by(step).collect()
 }
 
 /// Upper left corners of blocks scattered over a picture: one at random in each of up to
@@ -125,10 +137,22 @@ pub fn settle(
     tolerance: f64,
     job: &Job,
 ) -> Result<(StillRequest, Needs), StillError> {
+    let eye = Eye::new(renderer, request, job);
+    settle_by(&eye, engine, design, request, tolerance)
+}
+
+/// As [`settle`], by the blocks that an eye looks at.
+pub(super) fn settle_by(
+    eye: &Eye<'_>,
+    engine: &dyn Engine,
+    design: &Design,
+    request: &StillRequest,
+    tolerance: f64,
+) -> Result<(StillRequest, Needs), StillError> {
     let begun = std::time::Instant::now();
     let mut settled = request.clone();
     settled.effects.found.clear();
-    let plan = renderer.plan(&settled, Subject::Cloth)?;
+    let plan = eye.renderer.plan(&settled, Subject::Cloth)?;
     let mut settling = Settling {
         needs: planned(&plan),
         tolerance: tolerance.max(0.0),
@@ -142,7 +166,6 @@ pub fn settle(
     if matches!(lights.sky, Sky::Dark) {
         settling.nothing(Effect::Sky, "this light has no sky");
     }
-    let eye = Eye::new(renderer, request, job);
     let mut saved = 0.0;
     if tolerance > 0.0
         && let Some(seen) = eye.look(engine, &settled, SPP, &|_| {})?
@@ -305,7 +328,7 @@ impl Settling {
 }
 
 /// A share that is not exceeded, in words.
-pub(super) fn at_most(share: f64) -> String {
+pub fn at_most(share: f64) -> String {
     match share {
         share if share < 1e-3 => "under 0.1 %".to_owned(),
         share if share < 0.0995 => format!("{:.1} %", 100.0 * share),

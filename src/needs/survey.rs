@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::block_change::{DARK, common, upper_percentile};
-use super::settling::{Eye, Need, Needs, at_most, settle};
+use super::pair::{Pair, Pairing};
+use super::settling::{BLOCKS, Eye, Need, Needs, at_most, settle_by};
 use crate::design::Design;
 use crate::engine::{Engine, Renderer, StillError, StillRequest};
 use crate::exemplar::ExemplarStore;
@@ -11,8 +12,21 @@ use crate::job::Job;
 use crate::plan::{Decider, Effect, Subject};
 use crate::render::BlocksSeen;
 
-/// Paths a pixel of each of two looks.
-const SPP: u32 = 12;
+/// How closely a picture is looked at.
+#[derive(Clone, Copy)]
+struct Closeness {
+    /// Blocks, at most.
+    blocks: usize,
+    /// Paths a pixel of each of two looks.
+    spp: u32,
+}
+
+const CLOSE: Closeness = Closeness {
+    blocks: BLOCKS as usize,
+    spp: 12,
+};
+/// For somebody who waits: as few blocks as percentiles can be told of.
+const QUICK: Closeness = Closeness { blocks: 64, spp: 8 };
 
 /// What a picture of a design calls for, settled as [`settle`] does, and what each effect that is
 /// on changes and costs. Times are of this machine now.
@@ -27,20 +41,53 @@ pub fn survey(
     store: &ExemplarStore,
     job: &Job,
 ) -> Result<(StillRequest, Needs), StillError> {
+    let asked = (request, tolerance, CLOSE);
+    surveyed(design, renderer, asked, (store, job), None)
+}
+
+/// As [`survey`], of fewer places and quicker, with a small picture of each effect that is on,
+/// and one without it.
+///
+/// # Errors
+/// As [`survey`].
+pub fn survey_in_pictures(
+    design: &Arc<Design>,
+    renderer: &Renderer,
+    request: &StillRequest,
+    tolerance: f64,
+    store: &ExemplarStore,
+    job: &Job,
+) -> Result<(StillRequest, Needs, Vec<Pair>), StillError> {
+    let mut pairs = Vec::new();
+    let (asked, keep) = ((request, tolerance, QUICK), Some(&mut pairs));
+    let (settled, needs) = surveyed(design, renderer, asked, (store, job), keep)?;
+    Ok((settled, needs, pairs))
+}
+
+/// Surveys, and keeps pictures where that is asked for.
+fn surveyed(
+    design: &Arc<Design>,
+    renderer: &Renderer,
+    (request, tolerance, closeness): (&StillRequest, f64, Closeness),
+    (store, job): (&ExemplarStore, &Job),
+    mut keep: Option<&mut Vec<Pair>>,
+) -> Result<(StillRequest, Needs), StillError> {
     let begun = std::time::Instant::now();
     let quiet = &job.clone().with_listener(|_, _| {});
     job.report("making the cloth", 0.0);
     let design = &crate::engine::coloured(design, request)?;
     let engine = renderer.engine(design, request, store, quiet)?;
     job.report("looking at the light", 0.1);
-    let (settled, mut needs) = settle(&*engine, renderer, design, request, tolerance, quiet)?;
-    let eye = Eye::new(renderer, request, quiet);
+    let eye = Eye::new(renderer, request, quiet).at_most(closeness.blocks);
+    let (settled, mut needs) = settle_by(&eye, &*engine, design, request, tolerance)?;
     let plan = renderer.plan(request, Subject::Cloth)?;
     let mut surveying = Surveying {
         eye,
+        spp: closeness.spp,
         request,
         with: None,
     };
+    let mut pairing = Pairing::new(renderer, design, request, quiet);
     let count = needs.effects.len() as f32;
     for (number, need) in needs.effects.iter_mut().enumerate() {
         // What there is nothing of, and what somebody left out, has nothing to be looked at.
@@ -52,14 +99,18 @@ pub fn survey(
             0.2 + 0.8 * number as f32 / count,
         );
         let mut without = request.clone();
-        without.effects.changes.push((need.effect, false));
+        without.effects.switch(need.effect, Some(false));
         let same = renderer.plan(&without, Subject::Cloth)?.cloth == plan.cloth;
         let other = match same {
             true => None,
             false => Some(renderer.engine(design, &without, store, quiet)?),
         };
         let other = other.as_deref().unwrap_or(&*engine);
-        surveying.tell(need, (&*engine, other), &without)?;
+        let engines = (&*engine, other);
+        surveying.tell(need, engines, &without)?;
+        if let Some(pairs) = &mut keep {
+            pairs.push(pairing.take(need.effect, engines, &without)?);
+        }
     }
     needs.seconds = begun.elapsed().as_secs_f64();
     Ok((settled, needs))
@@ -70,6 +121,8 @@ type Looks = [BlocksSeen; 2];
 
 struct Surveying<'s> {
     eye: Eye<'s>,
+    /// Paths a pixel of each look.
+    spp: u32,
     request: &'s StillRequest,
     /// The picture as it is asked for, once it was looked at.
     with: Option<Looks>,
@@ -86,7 +139,7 @@ impl Surveying<'_> {
             return Ok(None);
         }
         let look = |other_paths: u64| {
-            self.eye.look(engine, request, SPP, &|shot| {
+            self.eye.look(engine, request, self.spp, &|shot| {
                 shot.plan.render.seed = shot.plan.render.seed.wrapping_add(other_paths);
             })
         };

@@ -153,6 +153,18 @@ pub struct Planned {
 }
 
 impl EffectChoice {
+    /// Switches an effect on or off by name; `None` = back to where the choice starts from.
+    pub fn switch(&mut self, effect: Effect, on: Option<bool>) {
+        self.changes.retain(|(named, _)| *named != effect);
+        self.changes.extend(on.map(|on| (effect, on)));
+    }
+
+    /// Whether an effect is switched on or off by name.
+    pub fn named(&self, effect: Effect) -> Option<bool> {
+        let last = (self.changes.iter().rev()).find(|(named, _)| *named == effect);
+        last.map(|(_, on)| *on)
+    }
+
     /// What the choice comes to, of each effect that the subject can have.
     pub(super) fn plan(&self, subject: Subject) -> Vec<Planned> {
         let effects = Effect::ALL.iter().copied();
@@ -162,11 +174,10 @@ impl EffectChoice {
     }
 
     fn planned(&self, effect: Effect, subject: Subject) -> Planned {
-        let named = (self.changes.iter().rev()).find(|(named, _)| *named == effect);
         let found = self.found.iter().find(|found| found.effect == effect);
-        let (on, why, by) = match (named, self.base, found) {
-            (Some((_, true)), ..) => (true, "asked for by name".into(), Decider::Person),
-            (Some((_, false)), ..) => (false, "left out by name".into(), Decider::Person),
+        let (on, why, by) = match (self.named(effect), self.base, found) {
+            (Some(true), ..) => (true, "asked for by name".into(), Decider::Person),
+            (Some(false), ..) => (false, "left out by name".into(), Decider::Person),
             (None, EffectBase::All, _) => (true, "all were asked for".into(), Decider::Person),
             (None, EffectBase::None, _) => (false, "none was asked for".into(), Decider::Person),
             (None, EffectBase::Auto, Some(found)) => {
@@ -218,6 +229,25 @@ mod tests {
             .collect();
         assert_eq!(on, [Effect::Sky]);
         assert!(plan.iter().all(|planned| planned.by == Decider::Person));
+    }
+
+    #[test]
+    fn a_switch_is_said_once_and_taken_back() {
+        let mut choice = EffectChoice {
+            changes: vec![(Effect::Sky, true), (Effect::Sky, false)],
+            ..EffectChoice::default()
+        };
+        choice.switch(Effect::Hairs, Some(false));
+        choice.switch(Effect::Sky, Some(true));
+        choice.switch(Effect::Sky, Some(false));
+        assert_eq!(
+            choice.changes,
+            [(Effect::Hairs, false), (Effect::Sky, false)]
+        );
+        assert_eq!(choice.named(Effect::Sky), Some(false));
+        choice.switch(Effect::Sky, None);
+        assert_eq!(choice.changes, [(Effect::Hairs, false)]);
+        assert_eq!(choice.named(Effect::Sky), None);
     }
 
     fn found(effect: Effect, on: bool) -> Found {

@@ -252,3 +252,31 @@ fn what_is_off_is_no_work() {
     let none = counted(Effect::ALL);
     assert!(none.shadow_rays == 0 && none.scatterings <= none.paths);
 }
+
+#[test]
+fn pictures_with_and_without_an_effect_are_alike_but_for_it() {
+    let (design, asked) = (design("silk-satin"), request("sun"));
+    let (renderer, store, job) = (engine::reference(), ExemplarStore::user(), Job::new());
+    let look = || {
+        let looked = needs::survey_in_pictures(&design, renderer, &asked, 0.01, &store, &job);
+        looked.expect("looked at").2
+    };
+    let pairs = look();
+    let of = |effect| pairs.iter().find(|pair| pair.effect == effect);
+    // Silk has no hairs, and this light no sky: there is nothing to be seen of them.
+    assert!(of(Effect::Hairs).is_none() && of(Effect::Sky).is_none());
+    for pair in &pairs {
+        let size = |picture: &pickglass::film::Picture| (picture.width, picture.height);
+        assert_eq!(size(&pair.with), (64, 48));
+        assert_eq!(size(&pair.without), (64, 48));
+    }
+    // Without shadows it is brighter, by more than an eye overlooks.
+    let mean = |picture: &pickglass::film::Picture| {
+        let pixels = picture.pixels.iter();
+        pixels.map(|[_, green, ..]| f64::from(*green)).sum::<f64>() / picture.pixels.len() as f64
+    };
+    let shadows = of(Effect::Shadows).expect("shadows");
+    assert!(mean(&shadows.without) > mean(&shadows.with) + 0.02);
+    // The control: the same picture taken anew is the same, so that all else is the effect's.
+    assert_eq!(look()[0].with, pairs[0].with);
+}

@@ -58,6 +58,7 @@ impl App {
                         self.warn(error, "Nothing was set.");
                     }
                 }
+                Action::Switch(effect, on) => self.preview.switch(effect, on),
                 Action::Show(pane) => self.layout.bring(pane),
                 Action::Say(grade, text, kept) => self.say(grade, text, kept),
             }

@@ -3,6 +3,7 @@
 
 use pickglass::design::YarnId;
 use pickglass::edit::{Cells, Edit};
+use pickglass::plan::Effect;
 
 use super::panes::Pane;
 use super::toasts::Grade;
@@ -50,6 +51,8 @@ pub enum Action {
     Calibrated(f32),
     /// Turn the dial, or switch the effect, of this name, for the cloth that is shown.
     Set(String, String),
+    /// Switch an effect on or off for the cloth that is shown; `None` = by itself again.
+    Switch(Effect, Option<bool>),
     /// Bring a pane to the front.
     Show(Pane),
     /// Tell the person what happened and what was kept.

@@ -307,6 +307,7 @@ impl App {
         preview.marked = self.hover;
         panes.section.follow(self.hover);
         panes.look(preview.asked());
+        panes.effects.follow(preview.look());
         (preview.turned, panes.turned) = (draft.turned(), draft.turned());
         Panel::left("tools")
             .exact_size(tokens::TOOLS_WIDTH)

@@ -1,6 +1,7 @@
-//! Pictures that people open, made small enough for the screen.
+//! Pictures for the screen: those that people open, made small enough, and those of cloth.
 
 use pickglass::design::SourceImage;
+use pickglass::film::Picture;
 
 use crate::tokens;
 
@@ -17,4 +18,13 @@ pub fn shrunk(source: &SourceImage, longest: usize) -> egui::ColorImage {
         })
         .collect();
     egui::ColorImage::new(size, pixels)
+}
+
+/// A picture of cloth, pixel by pixel.
+pub fn image(picture: &Picture) -> egui::ColorImage {
+    let size = [picture.width as usize, picture.height as usize];
+    let bytes: Vec<u8> = (picture.pixels.iter())
+        .flat_map(|pixel| pixel.map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8))
+        .collect();
+    egui::ColorImage::from_rgba_unmultiplied(size, &bytes)
 }

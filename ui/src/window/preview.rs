@@ -8,7 +8,7 @@ use pickglass::accuracy::{Asked, Axis};
 use pickglass::edit::Document;
 use pickglass::engine::{self, Heading, LightChoice, StillRequest, usual_width_mm};
 use pickglass::exemplar::ExemplarStore;
-use pickglass::plan::{EffectChoice, Settings};
+use pickglass::plan::{Effect, EffectChoice, Settings};
 use pickglass::render::Backing;
 use pickglass::scene::View;
 use pickglass::text::visible;
@@ -209,6 +209,11 @@ impl Preview {
         let request = set.map_err(|error| error.to_string())?.request;
         (self.settings, self.effects) = (request.settings, request.effects);
         Ok(())
+    }
+
+    /// Switches an effect on or off by name; `None` = by itself again.
+    pub fn switch(&mut self, effect: Effect, on: Option<bool>) {
+        self.effects.switch(effect, on);
     }
 
     /// Refining waits while nobody sees the window.
@@ -480,7 +485,7 @@ impl Preview {
     }
 
     /// From where the cloth is looked at, in which light and how exactly.
-    fn look(&self) -> StillRequest {
+    pub fn look(&self) -> StillRequest {
         StillRequest {
             view: self.view,
             turned: self.turned,

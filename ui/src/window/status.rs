@@ -123,7 +123,7 @@ fn quality(shown: &Shown, status: &Status<'_>) -> String {
         (Phase::Done(Done::Good), _) => format!(" · done: {}", status.quality.name()),
         (Phase::Done(Done::Long), _) => format!(" · done: {:.0} minutes", LONGEST / 60.0),
         (Phase::Done(Done::Waiting), _) => " · first sight".to_owned(),
-        _ if status.measuring => " · waits while accuracy is measured".to_owned(),
+        _ if status.measuring => " · waits while times are measured".to_owned(),
         _ if status.hidden => " · waits while hidden".to_owned(),
         (_, Fibres::Coarse { light_error }) => {
             let light = light_error.map_or_else(String::new, |error| {

@@ -3,9 +3,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use egui::{
-    Button, ColorImage, Label, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, vec2,
-};
+use egui::{Button, Label, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, vec2};
 use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
 use pickglass::accuracy::{
     self, Accuracy, AccuracyError, Asked, Axis, Curve, Effort, Measuring, Point, number,
@@ -18,9 +16,11 @@ use pickglass::film::Picture;
 use pickglass::job::Job;
 use strum::EnumMessage;
 
+use super::columns::column;
 use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
+use crate::window::picture::image;
 use crate::window::task::{Outcome, Running};
 
 /// Width of the list of dials and of that of settings, points.
@@ -338,16 +338,6 @@ impl AccuracyPane {
     }
 }
 
-/// A column of this size.
-fn column<R>(ui: &mut Ui, size: egui::Vec2, show: impl FnOnce(&mut Ui) -> R) -> R {
-    let layout = egui::Layout::top_down(egui::Align::Min);
-    ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.set_min_size(size);
-        show(ui)
-    })
-    .inner
-}
-
 /// Whether the window can set a dial: how many paths there are, its quality says, and what
 /// draws, the cloth itself does.
 fn can_be_set(curve: &Curve) -> bool {
@@ -376,14 +366,6 @@ fn row(curve: &Curve, point: &Point) -> String {
         point.value,
         number(point.seconds)
     )
-}
-
-fn image(picture: &Picture) -> ColorImage {
-    let size = [picture.width as usize, picture.height as usize];
-    let bytes: Vec<u8> = (picture.pixels.iter())
-        .flat_map(|pixel| pixel.map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8))
-        .collect();
-    ColorImage::from_rgba_unmultiplied(size, &bytes)
 }
 
 /// Decimal logarithms of time and error of each setting.

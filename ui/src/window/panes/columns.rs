@@ -1,6 +1,7 @@
-//! Lists whose rows are widgets: cells of one width, so that what follows them lines up.
+//! Columns of a pane, and lists whose rows are widgets: cells of one width, so that what follows
+//! them lines up.
 
-use egui::{Response, TextStyle, Ui};
+use egui::{Align, Layout, Response, TextStyle, Ui, Vec2};
 use pickglass::text::visible;
 
 use crate::tokens;
@@ -31,4 +32,14 @@ pub fn cell(ui: &mut Ui, width: f32, show: impl FnOnce(&mut Ui) -> Response) -> 
         ui.add_space(left);
     }
     response
+}
+
+/// A column of this size.
+pub fn column<R>(ui: &mut Ui, size: Vec2, show: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = Layout::top_down(Align::Min);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_size(size);
+        show(ui)
+    })
+    .inner
 }

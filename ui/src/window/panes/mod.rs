@@ -6,6 +6,7 @@ mod accuracy;
 mod colourways;
 mod columns;
 mod dragging;
+mod effects;
 mod floats;
 mod history;
 pub mod later;
@@ -127,17 +128,19 @@ panes! {
     history: history::History, History, "History", [Num7], "Show history", "All changes by name; a click goes back to one";
     log: log::Log, Log, "Log", [Num8], "Show log", "All that was said, warnings and errors";
     accuracy: accuracy::AccuracyPane, Accuracy, "Accuracy", [Num9], "Show accuracy", "What each approximation costs in time and how wrong it is, measured";
+    effects: effects::EffectsPane, Effects, "Effects", [Num0], "Show effects", "What the picture simulates, what each part of it costs and what may be left out";
 }
 
 impl Panes {
     /// How the cloth is looked at.
     pub fn look(&mut self, asked: Option<&StillRequest>) {
         self.accuracy.look(asked);
+        self.effects.look(asked);
     }
 
     /// Whether a pane measures how long things take.
     pub fn is_measuring(&self) -> bool {
-        self.accuracy.is_measuring()
+        self.accuracy.is_measuring() || self.effects.is_looking()
     }
 
     /// Reads a picture to be posterised.

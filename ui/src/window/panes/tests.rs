@@ -12,19 +12,19 @@ use crate::window::action::{Action, Mark};
 use crate::window::{crossing, laid};
 
 /// A document with its panes, and what they asked for so far.
-struct Bench {
-    document: Document,
-    panes: Panes,
+pub(super) struct Bench {
+    pub document: Document,
+    pub panes: Panes,
     pane: Pane,
-    asked: Vec<Action>,
+    pub asked: Vec<Action>,
 }
 
-fn bench(preset: &str, pane: Pane) -> Harness<'static, Bench> {
+pub(super) fn bench(preset: &str, pane: Pane) -> Harness<'static, Bench> {
     let builder = Harness::builder().with_size([720.0, 520.0]);
     build(builder, preset, pane)
 }
 
-fn build(
+pub(super) fn build(
     builder: egui_kittest::HarnessBuilder<Bench>,
     preset: &str,
     pane: Pane,

@@ -3,6 +3,7 @@
 
 mod colours;
 mod drafts;
+mod effects;
 mod fields;
 mod files;
 mod flow;
