@@ -104,6 +104,16 @@ impl Axis {
         self.ladder().last().copied().unwrap_or_default()
     }
 
+    /// What decides on it where a picture refines before somebody's eyes; `None` where it is
+    /// set there like all others.
+    pub fn elsewhere(&self) -> Option<&'static str> {
+        match self {
+            Self::Dial(dial) => dial.elsewhere,
+            Self::Effect(_) => None,
+            Self::Renderer => Some("first sight stands until what is traced is better"),
+        }
+    }
+
     /// In what its errors are told.
     pub fn measure(&self) -> Measure {
         match self {

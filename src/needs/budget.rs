@@ -83,7 +83,7 @@ pub fn afford(
     (budget, begun): (Budget, Instant),
     job: &Job,
 ) -> Result<Option<(StillRequest, Promise)>, StillError> {
-    let mut eye = Eye::new(renderer, request, job);
+    let mut eye = Eye::new(renderer, request, job)?;
     let all = std::mem::take(&mut eye.corners);
     eye.corners = some_of(&all, FIRST.1);
     // What is made at the first look is no part of a path's time.

@@ -8,7 +8,7 @@ use crate::job::Job;
 use crate::plan::{Decider, Effect, Found, Plan, Subject};
 use crate::random::Random;
 use crate::render::{BLOCK, BlocksSeen};
-use crate::scene::light::Sky;
+use crate::scene::light::{LightRig, Sky};
 
 /// Blocks that are looked at, at most.
 pub(super) const BLOCKS: u32 = 192;
@@ -59,15 +59,24 @@ pub(super) struct Eye<'e> {
     pub renderer: &'e Renderer,
     pub corners: Vec<[u32; 2]>,
     pub job: &'e Job,
+    /// The light, read once.
+    lights: LightRig,
 }
 
 impl<'e> Eye<'e> {
-    pub fn new(renderer: &'e Renderer, request: &StillRequest, job: &'e Job) -> Self {
-        Self {
+    /// An eye for pictures like `request`, whatever is left out of them.
+    pub fn new(
+        renderer: &'e Renderer,
+        request: &StillRequest,
+        job: &'e Job,
+    ) -> Result<Self, StillError> {
+        let plan = renderer.plan(request, Subject::Cloth)?;
+        Ok(Self {
             renderer,
             corners: corners(request.width, request.height),
             job,
-        }
+            lights: Shot::new(request, plan)?.lights,
+        })
     }
 
     /// The same with so many blocks at most, still from all over the picture.
@@ -86,7 +95,11 @@ impl<'e> Eye<'e> {
         alter: &dyn Fn(&mut Shot<'_>),
     ) -> Result<Option<BlocksSeen>, StillError> {
         let plan = self.renderer.plan(request, Subject::Cloth)?;
-        let mut shot = Shot::new(request, plan)?;
+        let mut shot = Shot {
+            request,
+            lights: self.lights.clone(),
+            plan,
+        };
         alter(&mut shot);
         engine.look_at(&shot, &self.corners, spp, self.job)
     }
@@ -137,7 +150,7 @@ pub fn settle(
     tolerance: f64,
     job: &Job,
 ) -> Result<(StillRequest, Needs), StillError> {
-    let eye = Eye::new(renderer, request, job);
+    let eye = Eye::new(renderer, request, job)?;
     settle_by(&eye, engine, design, request, tolerance)
 }
 

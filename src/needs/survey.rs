@@ -78,7 +78,7 @@ fn surveyed(
     let design = &crate::engine::coloured(design, request)?;
     let engine = renderer.engine(design, request, store, quiet)?;
     job.report("looking at the light", 0.1);
-    let eye = Eye::new(renderer, request, quiet).at_most(closeness.blocks);
+    let eye = Eye::new(renderer, request, quiet)?.at_most(closeness.blocks);
     let (settled, mut needs) = settle_by(&eye, &*engine, design, request, tolerance)?;
     let plan = renderer.plan(request, Subject::Cloth)?;
     let mut surveying = Surveying {

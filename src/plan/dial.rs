@@ -92,6 +92,9 @@ pub struct Dial {
     pub effect: Option<Effect>,
     /// Whether voxels that were read have it; cloth has all.
     pub of_voxels: bool,
+    /// What decides on it where a picture refines before somebody's eyes; `None` where it is
+    /// turned there like all others.
+    pub elsewhere: Option<&'static str>,
     /// Why it changes nothing of a picture with these settings before this backing, and what
     /// would have to be so; `None` where it does.
     pub idle: fn(&Settings, Backing) -> Option<&'static str>,

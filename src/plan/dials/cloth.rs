@@ -12,6 +12,7 @@ pub(super) static LEVEL: Dial = Dial {
     measure: Measure::Bias,
     effect: None,
     of_voxels: false,
+    elsewhere: None,
     idle: always,
     get: |settings| settings.cloth.level.to_string(),
     set: |settings, text| {
@@ -29,6 +30,7 @@ pub(super) static LEVEL_CORRECTION: Dial = Dial {
     measure: Measure::Bias,
     effect: None,
     of_voxels: false,
+    elsewhere: None,
     idle: |settings, _| {
         let why = "level 0 needs none: add --set level=1 to 4, or leave it out";
         (settings.cloth.level == 0).then_some(why)

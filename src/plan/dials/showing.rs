@@ -12,6 +12,7 @@ pub(super) static DENOISE: Dial = Dial {
     measure: Measure::Shown,
     effect: None,
     of_voxels: true,
+    elsewhere: None,
     idle: always,
     get: |settings| switched(settings.showing.denoise),
     set: |settings, text| {
@@ -29,6 +30,7 @@ pub(super) static PNG_BITS: Dial = Dial {
     measure: Measure::Rounding,
     effect: None,
     of_voxels: true,
+    elsewhere: Some("it is a matter of the file: still --set png-bits=16"),
     idle: always,
     get: |settings| match settings.showing.png_depth {
         Depth::Eight => "8".to_owned(),

@@ -13,6 +13,7 @@ pub(super) static METHOD: Dial = Dial {
     measure: Measure::Continuity,
     effect: None,
     of_voxels: false,
+    elsewhere: None,
     idle: always,
     get: |settings| settings.cloth.synthesis.method.to_string(),
     set: |settings, text| {
@@ -30,6 +31,7 @@ pub(super) static RANK: Dial = Dial {
     measure: Measure::Seams,
     effect: Some(Effect::EdgeFixing),
     of_voxels: false,
+    elsewhere: None,
     idle: always,
     get: |settings| match settings.cloth.synthesis.rank {
         Rank::Off => "0".to_owned(),
@@ -55,6 +57,7 @@ pub(super) static PATCH: Dial = Dial {
     measure: Measure::Repetition,
     effect: Some(Effect::Randomisation),
     of_voxels: false,
+    elsewhere: None,
     idle: always,
     get: |settings| settings.cloth.synthesis.patch.to_string(),
     set: |settings, text| {

@@ -14,6 +14,7 @@ pub(super) static ORDER: Dial = Dial {
     measure: Measure::Bias,
     effect: Some(Effect::Multiple),
     of_voxels: true,
+    elsewhere: None,
     idle: always,
     get: |settings| settings.render.max_order.to_string(),
     set: |settings, text| {
@@ -31,6 +32,7 @@ pub(super) static ROULETTE_ORDER: Dial = Dial {
     measure: Measure::Noise,
     effect: Some(Effect::Multiple),
     of_voxels: true,
+    elsewhere: None,
     idle: always,
     get: |settings| match settings.render.roulette_order {
         u32::MAX => "never".to_owned(),
@@ -54,6 +56,7 @@ pub(super) static SHADOW_ROULETTE: Dial = Dial {
     measure: Measure::Noise,
     effect: Some(Effect::Shadows),
     of_voxels: true,
+    elsewhere: None,
     idle: always,
     get: |settings| settings.render.shadow_roulette.to_string(),
     set: |settings, text| {
@@ -72,6 +75,7 @@ pub(super) static SPP: Dial = Dial {
     measure: Measure::Noise,
     effect: None,
     of_voxels: true,
+    elsewhere: Some("what is refined until says how many paths there are"),
     idle: always,
     get: |settings| settings.render.spp.to_string(),
     set: |settings, text| {
@@ -89,6 +93,7 @@ pub(super) static PASS_SPP: Dial = Dial {
     measure: Measure::Noise,
     effect: None,
     of_voxels: true,
+    elsewhere: Some("the window shows a picture as soon as it is better"),
     idle: always,
     get: |settings| settings.render.pass_spp.to_string(),
     set: |settings, text| {
@@ -106,6 +111,7 @@ pub(super) static BACKING_LAYERS: Dial = Dial {
     measure: Measure::Bias,
     effect: None,
     of_voxels: false,
+    elsewhere: None,
     idle: |_, backing| {
         let why = "only cloth that lies on itself has layers: add --backing self, or leave it out";
         (backing != Backing::Itself).then_some(why)

@@ -280,7 +280,9 @@ impl AccuracyPane {
         actions: &mut Vec<Action>,
     ) {
         let now = self.set_to(curve);
-        let can_set = can_be_set(curve);
+        let axis = Axis::named(&curve.name).ok();
+        let elsewhere = axis.and_then(|axis| axis.elsewhere());
+        let can_set = elsewhere.is_none();
         let mut looked_at = pointed.map(|(at, _)| at);
         let mut taken = pointed.and_then(|(at, clicked)| clicked.then_some(at));
         ScrollArea::vertical()
@@ -293,9 +295,11 @@ impl AccuracyPane {
                         can_set,
                         Button::selectable(chosen, row(curve, point)).truncate(),
                     );
-                    if row.hovered() || row.has_focus() {
+                    let pointed_at = row.hovered() || row.has_focus();
+                    if pointed_at || row.contains_pointer() {
                         looked_at = Some(at);
                     }
+                    let row = row.on_disabled_hover_text(elsewhere.unwrap_or_default());
                     if row.clicked() {
                         taken = Some(at);
                     }
@@ -336,15 +340,6 @@ impl AccuracyPane {
             ));
         }
     }
-}
-
-/// Whether the window can set a dial: how many paths there are, its quality says, and what
-/// draws, the cloth itself does.
-fn can_be_set(curve: &Curve) -> bool {
-    !matches!(
-        curve.name.as_str(),
-        "spp" | "pass-spp" | "renderer" | "png-bits"
-    )
 }
 
 /// A setting in words.

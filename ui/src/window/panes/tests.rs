@@ -2,12 +2,14 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use pickglass::accuracy::{Asked, Axis};
 use pickglass::design::{Lattice, Repeat, Structure};
 use pickglass::edit::{Document, Edit};
-use pickglass::engine::StillRequest;
+use pickglass::engine::{self, StillRequest};
 use pickglass::presets;
 
 use super::{Pane, Panes};
+use crate::help;
 use crate::window::action::{Action, Mark};
 use crate::window::{crossing, laid};
 
@@ -80,6 +82,42 @@ fn every_pane_shows_every_preset() {
             harness.run_steps(3);
         }
     }
+}
+
+#[test]
+fn every_dial_has_its_place_in_help_reports_and_window() {
+    let asked = Asked {
+        request: StillRequest::default(),
+        renderer: engine::reference(),
+    };
+    let help = help::still();
+    for axis in Axis::all() {
+        let (name, ladder) = (axis.name(), axis.ladder());
+        assert!(
+            ladder.len() > 1 && axis.reference() == ladder[ladder.len() - 1],
+            "{name}"
+        );
+        assert!(
+            !axis.measure().unit().is_empty() && !axis.about().is_empty(),
+            "{name}"
+        );
+        // Reports take it by name, and help says it, but for what draws: that is an option.
+        assert_eq!(Axis::named(name).expect("a name").name(), name);
+        let said = help.contains(&format!("* {name}: ")) || name == "renderer";
+        assert!(said, "{name}");
+        // The window sets it, or says what does.
+        match axis.elsewhere() {
+            Some(what) => assert!(!what.ends_with('.'), "{name}"),
+            None => {
+                for value in ladder {
+                    let set = axis.set(&asked, value).expect("a setting of its ladder");
+                    assert_eq!(axis.current(&set), value, "{name}");
+                }
+            }
+        }
+    }
+    // Control: what is no dial has no place.
+    assert!(Axis::named("glow").is_err() && !help.contains("* glow: "));
 }
 
 #[test]
