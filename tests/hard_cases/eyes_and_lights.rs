@@ -78,11 +78,8 @@ fn eyes_at_a_tenth_of_a_degree_and_inside() {
         ] {
             let straight = Camera::orthographic(AT, from, Vec3::Z, 6.0, 16, 16);
             let (_, _, covered) = mean(&look(&straight, &lights, 4));
-            // Above the cloth nothing is met by what goes along it, and by all else something.
-            match degrees == 0.0 {
-                true => assert!((0.05..0.95).contains(&covered), "{covered}"),
-                false => assert!(covered > 0.9, "{degrees}°: {covered}"),
-            }
+            // Some rays pass over the cloth or below it, others go along in it.
+            assert!((0.05..0.95).contains(&covered), "{degrees}°: {covered}");
             let near = Camera::perspective(AT, from, Vec3::Z, 60.0, 1.0, 16, 16);
             look(&near, &lights, 4);
         }
