@@ -91,7 +91,7 @@ mod tests {
         forecast.note(1, 2.0, 0.1);
         assert_eq!(
             forecast.words(2.0).as_deref(),
-            Some("An error of 5 % in 6 s, of 2 % in 48 s, of 1 % in 198 s.")
+            Some("An error of 5 % in 6 s, of 2 % in 48 s, of 1 % in 3 min.")
         );
         assert_eq!(forecast.record(), None);
         // It came as it was said, and once much later.

@@ -106,13 +106,14 @@ fn round(seed: u64, requests: u64) {
     let begun = Instant::now();
     let mut shown = None;
     loop {
-        let done = matches!(worker.phase(), Phase::Done(_) | Phase::AtSight(_));
+        // It may be that of the request before, as long as there is no traced picture.
+        let done = matches!(worker.phase(), Phase::Done(_));
         if let Some(picture) = looked_at(&worker, last) {
             shown = Some(picture);
         }
         let latest = shown
             .as_ref()
-            .is_some_and(|picture| picture.generation == last);
+            .is_some_and(|picture| picture.generation == last && picture.spp > 0);
         if done && latest {
             break;
         }
@@ -123,7 +124,6 @@ fn round(seed: u64, requests: u64) {
     }
     let shown = shown.expect("a picture");
     assert!(is_red(&shown), "an older cloth is shown, round {seed}");
-    assert!(shown.full_size && shown.spp > 0);
 }
 
 #[test]
