@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Fault;
+use super::fault::Fault;
 use crate::design::{
     Design, Family, Sett, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, weave,
 };

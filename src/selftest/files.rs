@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::Fault;
 use super::damage::damaged;
+use super::fault::Fault;
 use crate::design::{
     Design, DesignError, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };

@@ -9,6 +9,7 @@
 
 mod damage;
 mod drawing;
+mod fault;
 mod files;
 mod sums;
 mod walks;
@@ -17,6 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 pub use damage::damaged;
+use fault::Fault;
 
 use crate::engine::{RENDERERS, Renderer, StillError};
 use crate::job::{Cancelled, Job};
@@ -34,30 +36,6 @@ pub struct Case {
 enum Tried {
     Once(fn(&Job) -> Result<String, Fault>),
     EachRenderer(fn(&Renderer, &Job) -> Result<String, Fault>),
-}
-
-/// Why a case does not hold.
-#[derive(Debug, thiserror::Error)]
-enum Fault {
-    /// Something came out wrong.
-    #[error("{0}")]
-    Wrong(String),
-    /// A picture that there should be is none.
-    #[error("no picture: {0}")]
-    Picture(#[from] StillError),
-    /// The job was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
-
-impl Fault {
-    /// A fault where `sound` is false.
-    fn unless(sound: bool, wrong: impl FnOnce() -> String) -> Result<(), Self> {
-        match sound {
-            true => Ok(()),
-            false => Err(Self::Wrong(wrong())),
-        }
-    }
 }
 
 /// All cases, in the order in which they are tried.

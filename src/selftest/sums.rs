@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::Fault;
+use super::fault::Fault;
 use super::walks::{cube, shoot, sound};
 use crate::engine::StillError;
 use crate::film::{FirstHit, Pixel, Sample};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{UVec3, Vec3};
 
-use super::Fault;
+use super::fault::Fault;
 use crate::job::Job;
 use crate::random::Random;
 use crate::render::{Background, Counters, RenderOutcome, RenderSettings, Scatterer, render};
