@@ -10,6 +10,7 @@ use pickglass::job::Job;
 use pickglass::needs::{self, Need, Needs, Pair};
 use pickglass::plan::{Decider, Effect};
 
+use super::words;
 use crate::window::task::Running;
 
 /// A look that is under way; `None` = it was stopped.
@@ -49,8 +50,11 @@ pub fn start(
     tolerance: f64,
 ) -> std::io::Result<Look> {
     let (design, revision) = (Arc::clone(document.design()), document.revision());
-    Running::start(ctx, "effects", move |job, _| {
-        look(&design, revision, request, tolerance, job)
+    Running::start(ctx, "effects", move |job, teller| {
+        let teller = teller.clone();
+        let tell = move |stage: &str, share: f32| teller.tell(words::stage(stage, share));
+        let job = job.clone().with_listener(tell);
+        look(&design, revision, request, tolerance, &job)
     })
 }
 

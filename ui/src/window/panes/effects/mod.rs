@@ -7,7 +7,7 @@ mod pair;
 mod tests;
 mod words;
 
-use egui::{Button, Label, RichText, ScrollArea, Ui, WidgetInfo, vec2};
+use egui::{Button, Id, Label, RichText, ScrollArea, Ui, UiBuilder, WidgetInfo, vec2};
 use pickglass::edit::Document;
 use pickglass::engine::{self, StillRequest};
 use pickglass::plan::{Effect, Planned, Settings, Subject};
@@ -23,7 +23,7 @@ use pair::PairView;
 /// What may be left out, as a share of the light of 95 of 100 places.
 const TOLERANCES: [f64; 5] = [0.0, 0.005, 0.01, 0.02, 0.05];
 /// Room from which the pictures stand beside the rows, points.
-const BESIDE: egui::Vec2 = vec2(160.0 * tokens::GRID, 36.0 * tokens::GRID);
+const BESIDE: egui::Vec2 = vec2(160.0 * tokens::GRID, 24.0 * tokens::GRID);
 /// Width of the pictures beside them, points.
 const PICTURE: f32 = 80.0 * tokens::GRID;
 /// Height of the pictures among them, points.
@@ -67,30 +67,19 @@ impl Default for EffectsPane {
 impl PaneView for EffectsPane {
     fn show(&mut self, ui: &mut Ui, shown: &Shown<'_>, actions: &mut Vec<Action>) {
         self.poll();
-        self.head_ui(ui, shown.document, actions);
-        self.verdict_ui(ui, shown.document);
-        let plan = engine::reference().plan(&self.now, Subject::Cloth);
-        let rows = match plan {
-            Ok(plan) => plan.effects,
-            Err(error) => {
-                ui.label(RichText::new(error.to_string()).color(Palette::current(ui).error));
-                return;
-            }
-        };
         let room = ui.available_size();
-        if self.looked.is_some() && room.x > BESIDE.x && room.y > BESIDE.y {
-            let picture = PICTURE.min(0.35 * room.x);
-            let list = room.x - picture - ui.spacing().item_spacing.x;
-            ui.horizontal_top(|ui| {
-                column(ui, vec2(list, room.y), |ui| {
-                    scroll(ui, |ui| self.rows_ui(ui, &rows, false, actions));
-                });
-                let room = vec2(picture, room.y);
-                column(ui, room, |ui| self.pair_ui(ui, room));
-            });
-        } else {
-            scroll(ui, |ui| self.rows_ui(ui, &rows, true, actions));
+        if self.looked.is_none() || room.x < BESIDE.x || room.y < BESIDE.y {
+            self.list_ui(ui, shown.document, true, actions);
+            return;
         }
+        let picture = vec2(PICTURE.min(0.35 * room.x), room.y);
+        let list = room.x - picture.x - ui.spacing().item_spacing.x;
+        ui.horizontal_top(|ui| {
+            column(ui, vec2(list, room.y), |ui| {
+                self.list_ui(ui, shown.document, false, actions);
+            });
+            column(ui, picture, |ui| self.pair_ui(ui, picture));
+        });
     }
 
     // Forgets what was found of the design before.
@@ -251,16 +240,38 @@ impl EffectsPane {
         }
     }
 
-    /// A row for each effect; `among` = the pictures stand below the chosen one.
-    fn rows_ui(&mut self, ui: &mut Ui, rows: &[Planned], among: bool, actions: &mut Vec<Action>) {
+    /// What can be done, and a row for each effect; `among` = the pictures stand below the
+    /// chosen one.
+    fn list_ui(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        among: bool,
+        actions: &mut Vec<Action>,
+    ) {
+        self.head_ui(ui, document, actions);
+        let plan = engine::reference().plan(&self.now, Subject::Cloth);
+        let rows = match plan {
+            Ok(plan) => plan.effects,
+            Err(error) => {
+                ui.label(RichText::new(error.to_string()).color(Palette::current(ui).error));
+                return;
+            }
+        };
         let titles: Vec<String> = rows.iter().map(|row| words::title(row.effect)).collect();
         let width = widest(ui, titles.iter().map(String::as_str));
-        for (row, title) in rows.iter().zip(&titles) {
-            self.row_ui(ui, row, (title, width), actions);
-            if among && self.chosen == Some(row.effect) {
-                self.pair_ui(ui, vec2(ui.available_width(), AMONG));
+        let scrolled = ScrollArea::vertical().id_salt("effects").auto_shrink(false);
+        scrolled.show(ui, |ui| {
+            self.verdict_ui(ui, document);
+            for (row, title) in rows.iter().zip(&titles) {
+                // The keyboard stays where it is when something is said above.
+                let own = UiBuilder::new().scope_id(Id::unique(("effect", title)));
+                ui.scope_builder(own, |ui| self.row_ui(ui, row, (title, width), actions));
+                if among && self.chosen == Some(row.effect) {
+                    self.pair_ui(ui, vec2(ui.available_width(), AMONG));
+                }
             }
-        }
+        });
     }
 
     fn row_ui(
@@ -272,7 +283,7 @@ impl EffectsPane {
     ) {
         let need = (self.looked.as_ref()).and_then(|looked| looked.need(row.effect));
         let found = need.map(words::found).unwrap_or_default();
-        let told = format!("{} {found}", words::state(row));
+        let told = format!("{} {found}", words::state(row, need.is_some()));
         let words = |ui: &mut Ui| ui.add(Label::new(told.trim_end()).wrap());
         let chosen = self.looked.is_some() && self.chosen == Some(row.effect);
         let beside = ui.horizontal_top(|ui| {
@@ -297,16 +308,11 @@ impl EffectsPane {
     /// The pictures of the chosen row.
     fn pair_ui(&mut self, ui: &mut Ui, room: egui::Vec2) {
         if let (Some(looked), Some(effect)) = (&self.looked, self.chosen) {
-            self.pair.show(ui, (looked, self.number), effect, room);
+            let own = UiBuilder::new().scope_id(Id::unique("effect in pictures"));
+            let (looked, pair) = ((looked, self.number), &mut self.pair);
+            ui.scope_builder(own, |ui| pair.show(ui, looked, effect, room));
         }
     }
-}
-
-fn scroll(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical()
-        .id_salt("effects")
-        .auto_shrink(false)
-        .show(ui, show);
 }
 
 fn set_order(order: u32) -> Action {

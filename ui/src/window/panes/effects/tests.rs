@@ -80,7 +80,7 @@ fn every_effect_has_a_row_and_a_switch_before_anything_is_looked_at() {
             assert!(harness.query_by_label(&label).is_some(), "{label}");
         }
     }
-    let nobody = "On: nothing is left out unasked.";
+    let nobody = "On by itself: nothing is left out unasked.";
     assert_eq!(
         harness.query_all_by_label(nobody).count(),
         Effect::ALL.len()
@@ -231,6 +231,26 @@ fn pictures_are_flipped_by_the_keyboard() {
         &harness,
         "No pictures: there was nothing of flyaway hairs."
     ));
+}
+
+#[test]
+fn the_keyboard_stays_on_a_switch_when_a_notice_appears_above_it() {
+    let mut harness = bench("silk-satin", Pane::Effects);
+    let mut asked = request();
+    follow(&mut harness, &asked);
+    click(&mut harness, "Look");
+    wait(&mut harness);
+    harness.get_by_label("Shadows: off").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    assert_eq!(switched(&harness), [(Effect::Shadows, Some(false))]);
+    assert!(!says(&harness, "with other effects"));
+    asked.effects.switch(Effect::Shadows, Some(false));
+    follow(&mut harness, &asked);
+    assert!(says(&harness, "with other effects"));
+    let switch = harness.get_by_label("Shadows: off");
+    assert!(switch.accesskit_node().is_focused());
 }
 
 /// Wide and narrow in both themes. Where `PICKGLASS_PICTURES` names a folder, the pictures are

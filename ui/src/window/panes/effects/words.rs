@@ -31,12 +31,23 @@ pub fn about(effect: Effect) -> String {
     format!("{} On the command line: {effect}", effect.about())
 }
 
-/// Whether an effect is on, and who decided so.
-pub fn state(planned: &Planned) -> String {
+/// How far a look is, by the library's name of what it is at.
+pub fn stage(stage: &str, share: f32) -> String {
+    let without = stage.strip_prefix("without ");
+    let told = match without.and_then(|effect| effect.parse().ok()) {
+        Some(effect) => format!("looking without {}", name(effect)),
+        None => stage.to_owned(),
+    };
+    format!("{} · {:.0} %", sentence(&told), 100.0 * share)
+}
+
+/// Whether an effect is on, and who decided so; `brief` where more is said of it.
+pub fn state(planned: &Planned, brief: bool) -> String {
     match (planned.on, planned.by) {
         (true, Decider::Person) => "On: you asked for it.".to_owned(),
         (false, Decider::Person) => "Off: you left it out.".to_owned(),
-        (true, Decider::Scene) => "On: nothing is left out unasked.".to_owned(),
+        (true, Decider::Scene) if brief => "On by itself.".to_owned(),
+        (true, Decider::Scene) => "On by itself: nothing is left out unasked.".to_owned(),
         (on, _) => format!("{}: {}.", if on { "On" } else { "Off" }, planned.why),
     }
 }
@@ -163,5 +174,27 @@ fn share(share: f64) -> String {
     match 100.0 * share {
         percent if percent < 0.95 => "under 1 %".to_owned(),
         percent => format!("{percent:.0} %"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_in_a_row_and_stages_in_words() {
+        let names = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(listed(&names), "a, b and c");
+        assert_eq!(listed(&names[..2]), "a and b");
+        assert_eq!(listed(&names[..1]), "a");
+        assert_eq!(listed(&[]), "");
+        let said = stage("without edge-fixing", 0.5);
+        assert_eq!(said, "Looking without edge fixing · 50 %");
+        assert_eq!(stage("making the cloth", 0.0), "Making the cloth · 0 %");
+        assert_eq!(stage("without glow", 0.0), "Without glow · 0 %");
+        assert_eq!(
+            (share(0.004), share(0.36)),
+            ("under 1 %".into(), "36 %".into())
+        );
     }
 }
