@@ -9,7 +9,7 @@ use crate::job::Job;
 use crate::plan::{Effect, Subject};
 
 /// Pixels across and down, at most.
-const MOST: [u32; 2] = [120, 90];
+const MOST: [u32; 2] = [100, 75];
 /// Paths a pixel: what is left of their noise is filtered out.
 const SPP: u32 = 4;
 

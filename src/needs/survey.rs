@@ -26,7 +26,7 @@ const CLOSE: Closeness = Closeness {
     spp: 12,
 };
 /// For somebody who waits: as few blocks as percentiles can be told of.
-const QUICK: Closeness = Closeness { blocks: 64, spp: 6 };
+const QUICK: Closeness = Closeness { blocks: 64, spp: 5 };
 
 /// What a picture of a design calls for, settled as [`settle`] does, and what each effect that is
 /// on changes and costs. Times are of this machine now.

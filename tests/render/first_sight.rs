@@ -236,13 +236,16 @@ fn every_view_and_wild_places_give_a_picture() {
     for &view in View::ALL {
         let sight = first(&design);
         for width_mm in [0.011, 3.0, 9_000.0] {
-            for centre in [[0.0, 0.0], [-1e6, 1e6], [f32::NAN, 0.0]] {
+            for centre in [[0.0, 0.0], [-1e6, 1e6], [1e9, -1e9]] {
                 let mut request = request(view, "day");
                 (request.width, request.height) = (31, 17);
                 request.width_mm = Some(width_mm);
                 request.centre_mm = Some(centre);
                 let rgba = picture(&sight, &request, "wild");
                 assert_eq!(rgba.len(), 31 * 17 * 4);
+                // What is no place is refused.
+                request.centre_mm = Some([f32::NAN, 0.0]);
+                assert!(pickglass::engine::check_view(&design, &request).is_err());
             }
         }
     }

@@ -296,7 +296,11 @@ impl EffectsPane {
             }
             let beside = ui.available_width() > WORDS;
             if beside {
-                words(ui);
+                ui.vertical(|ui| {
+                    // On the line of the switch.
+                    ui.add_space(tokens::GRID);
+                    words(ui);
+                });
             }
             beside
         });

@@ -52,8 +52,11 @@ impl PairView {
                 let spoken = format!("Without {name}");
                 WidgetInfo::selected(egui::Role::Switch, true, self.without, spoken)
             });
-            if flip.on_hover_text("Space flips it as well").clicked() {
+            let flip = flip.on_hover_text("Space flips it as well");
+            if flip.clicked() {
                 self.without = !self.without;
+                // Space goes on where the pointer began.
+                flip.request_focus();
             }
             let with = if self.without { "Without" } else { "With" };
             ui.label(RichText::new(format!("{with} {name}")).strong());

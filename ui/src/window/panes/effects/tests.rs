@@ -224,6 +224,13 @@ fn pictures_are_flipped_by_the_keyboard() {
     harness.key_press(Key::Space);
     harness.run_steps(3);
     assert!(says(&harness, "The cloth with shadows"));
+    // After a click as well.
+    harness.get_by_label("Shadows").focus();
+    click(&mut harness, "Without shadows");
+    assert!(says(&harness, "The cloth without shadows"));
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    assert!(says(&harness, "The cloth with shadows"));
     // There are none of what the design has nothing of.
     harness.get_by_label("Flyaway hairs").click_accesskit();
     harness.run_steps(3);
