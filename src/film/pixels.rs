@@ -220,6 +220,14 @@ impl Film {
         self.pixels.iter().map(Pixel::mean).collect()
     }
 
+    /// Mean luminance of all pixels, and its standard error.
+    pub fn mean_luminance(&self) -> (f64, f64) {
+        let n = self.pixels.len() as f64;
+        let mean = self.pixels.iter().map(Pixel::luminance).sum::<f64>() / n;
+        let variance = self.pixels.iter().map(Pixel::variance).sum::<f64>();
+        (mean, variance.sqrt() / n)
+    }
+
     /// The pixels, to be exposed by hand.
     pub fn pixels_mut(&mut self) -> &mut [Pixel] {
         &mut self.pixels

@@ -28,8 +28,8 @@ const CLOSE: Closeness = Closeness {
 /// For somebody who waits: as few blocks as percentiles can be told of.
 const QUICK: Closeness = Closeness { blocks: 64, spp: 5 };
 
-/// What a picture of a design calls for, settled as [`settle`](super::settle) does, and what each effect that is
-/// on changes and costs. Times are of this machine now.
+/// What a picture of a design calls for, settled as [`settle`](super::settle) does, and what
+/// each effect that is on changes and costs. Times are of this machine now.
 ///
 /// # Errors
 /// When the request is not usable or the job is cancelled.

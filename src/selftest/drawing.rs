@@ -34,15 +34,11 @@ fn cotton(
     let maps = YarnMaps::plain(YarnId(0), YarnId(1));
     Design::new("hard case", Structure::Pattern(pattern), yarns, maps, sett)
         .map(Arc::new)
-        .map_err(wrong)
+        .map_err(Fault::of)
 }
 
 fn twill() -> Result<WeavePattern, Fault> {
-    weave("2/2 twill").map_err(wrong)
-}
-
-fn wrong(error: impl std::fmt::Display) -> Fault {
-    Fault::Wrong(error.to_string())
+    weave("2/2 twill").map_err(Fault::of)
 }
 
 fn usual() -> Sett {
@@ -73,36 +69,29 @@ fn drawn(
 ) -> Result<Still, Fault> {
     let store = ExemplarStore::user();
     let engine = renderer.engine(design, request, &store, job)?;
-    let plan = renderer.plan(request, Subject::Cloth).map_err(wrong)?;
+    let plan = renderer.plan(request, Subject::Cloth).map_err(Fault::of)?;
     let shot = Shot::new(request, plan)?;
     let still = draw(&*engine, design, &shot, job, &mut |_| {})?;
     sound(&still).map_err(|wrong| Fault::Wrong(format!("{name}: {wrong}")))?;
     Ok(still)
 }
 
-fn sound(still: &Still) -> Result<(), String> {
+fn sound(still: &Still) -> Result<(), Fault> {
     let report = &still.report;
-    for (count, what) in [
-        (report.majorant_violations, "lookups above their bound"),
-        (report.invalid_samples, "samples that are no light"),
-        (report.invalid_rays, "rays that are none"),
-    ] {
-        if count > 0 {
-            return Err(format!("{count} {what}"));
-        }
-    }
+    Fault::unless_counted_clean(
+        report.majorant_violations,
+        report.invalid_samples,
+        report.invalid_rays,
+    )?;
     // Light that is caught between two layers of yarn goes on and on, now and then.
     let paths = u64::from(report.width) * u64::from(report.height) * u64::from(report.spp);
-    if 100 * report.capped_walks > paths {
-        return Err(format!("{} walks without an end", report.capped_walks));
-    }
+    Fault::unless(100 * report.capped_walks <= paths, || {
+        format!("{} walks without an end", report.capped_walks)
+    })?;
     let light =
         (still.film.means().into_iter()).all(|mean| mean.is_finite() && mean.min_element() >= 0.0);
     let shown = (still.picture().pixels.iter().flatten()).all(|value| (0.0..=1.0).contains(value));
-    match light && shown {
-        true => Ok(()),
-        false => Err("pixels that are no light".to_owned()),
-    }
+    Fault::unless(light && shown, || "pixels that are no light".to_owned())
 }
 
 /// The share of a picture that cloth covers.
@@ -164,12 +153,12 @@ pub(super) fn noise_as_a_weave(renderer: &Renderer, job: &Job) -> Result<String,
     let design = cotton(noise, usual(), None)?;
     let still = drawn("noise", (renderer, job), &design, &small(4.0))?;
     covers("noise", &still, 0.8..=1.0)?;
-    let satin = cotton(weave("7/1 satin").map_err(wrong)?, usual(), None)?;
+    let satin = cotton(weave("7/1 satin").map_err(Fault::of)?, usual(), None)?;
     let stripe = (0..28).map(|end| YarnId(u16::from(end < 20))).collect();
     let maps = YarnMaps::orders(stripe, vec![YarnId(0)]);
     let design = Design::clone(&satin)
         .with_yarns(satin.yarns().to_vec(), maps)
-        .map_err(wrong)?;
+        .map_err(Fault::of)?;
     let still = drawn("stripe", (renderer, job), &Arc::new(design), &small(8.0))?;
     covers("stripe", &still, 0.8..=1.0)?;
     // The stripe shows: twenty light ends beside eight dark ones.

@@ -18,6 +18,26 @@ pub(super) enum Fault {
 }
 
 impl Fault {
+    /// What an error says.
+    pub(super) fn of(error: impl std::fmt::Display) -> Self {
+        Self::Wrong(error.to_string())
+    }
+
+    /// A fault where lookups were above their bound, or samples or rays are none.
+    pub(super) fn unless_counted_clean(
+        violations: u64,
+        invalid_samples: u64,
+        invalid_rays: u64,
+    ) -> Result<(), Self> {
+        let counted = [
+            (violations, "lookups above their bound"),
+            (invalid_samples, "samples that are no light"),
+            (invalid_rays, "rays that are none"),
+        ];
+        (counted.into_iter())
+            .try_for_each(|(count, what)| Self::unless(count == 0, || format!("{count} {what}")))
+    }
+
     /// A fault where `sound` is false.
     pub(super) fn unless(sound: bool, wrong: impl FnOnce() -> String) -> Result<(), Self> {
         match sound {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::damage::damaged;
 use super::fault::Fault;
 use crate::design::{
-    Design, DesignError, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
+    Design, Family, Srgb, Structure, WeavePattern, Yarn, YarnId, YarnMaps, usual_sett,
 };
 use crate::edit::recovery::{self, Recovery};
 use crate::formats::{FORMATS, LoadOptions, SaveOptions, load_bytes, save_bytes};
@@ -29,7 +29,7 @@ const PIECES: [&[u8]; 8] = [
 
 fn preset() -> Result<Design, Fault> {
     match presets::design("herringbone") {
-        Some(design) => design.map_err(|error| Fault::Wrong(error.to_string())),
+        Some(design) => design.map_err(Fault::of),
         None => Err(Fault::Wrong("the preset herringbone is missing".to_owned())),
     }
 }
@@ -72,19 +72,20 @@ fn one_line(said: &str) -> Result<(), Fault> {
 }
 
 pub(super) fn damaged_recovery(job: &Job) -> Result<String, Fault> {
-    let folder = tempfile::tempdir().map_err(failed)?;
-    let mut copy = Recovery::begin(folder.path()).map_err(failed)?;
+    let folder = tempfile::tempdir().map_err(Fault::of)?;
+    let mut copy = Recovery::begin(folder.path()).map_err(Fault::of)?;
     let states = three_states()?;
     let mut ends = Vec::new();
     for state in &states {
-        copy.save(&Arc::new(state.clone()), None).map_err(failed)?;
-        ends.push(std::fs::metadata(copy.path()).map_err(failed)?.len() as usize);
+        copy.save(&Arc::new(state.clone()), None)
+            .map_err(Fault::of)?;
+        ends.push(std::fs::metadata(copy.path()).map_err(Fault::of)?.len() as usize);
     }
-    let whole = std::fs::read(copy.path()).map_err(failed)?;
-    copy.close().map_err(failed)?;
+    let whole = std::fs::read(copy.path()).map_err(Fault::of)?;
+    copy.close().map_err(Fault::of)?;
     let path = folder.path().join("damaged.recovery");
     let back = |bytes: &[u8]| -> Result<Option<usize>, Fault> {
-        std::fs::write(&path, bytes).map_err(failed)?;
+        std::fs::write(&path, bytes).map_err(Fault::of)?;
         let Some(design) = recovered(&path)? else {
             return Ok(None);
         };
@@ -137,11 +138,10 @@ fn three_states() -> Result<[Design; 3], Fault> {
         )
     };
     let [first, second, third] = [0, 1, 2].map(state);
-    let failed = |error: DesignError| Fault::Wrong(error.to_string());
     Ok([
-        first.map_err(failed)?,
-        second.map_err(failed)?,
-        third.map_err(failed)?,
+        first.map_err(Fault::of)?,
+        second.map_err(Fault::of)?,
+        third.map_err(Fault::of)?,
     ])
 }
 
@@ -159,8 +159,4 @@ fn recovered(path: &Path) -> Result<Option<Design>, Fault> {
             Ok(None)
         }
     }
-}
-
-fn failed(error: impl std::fmt::Display) -> Fault {
-    Fault::Wrong(error.to_string())
 }

@@ -46,20 +46,6 @@ fn look(family: Family, colour: Srgb, camera: &Camera, sky: Sky, spp: u32) -> Re
     outcome
 }
 
-/// Mean light of a picture, and its standard error.
-fn mean(outcome: &RenderOutcome) -> (f64, f64) {
-    let pixels = outcome.film.pixels();
-    let n = pixels.len() as f64;
-    let mean = pixels.iter().map(|pixel| pixel.luminance()).sum::<f64>() / n;
-    let error = pixels
-        .iter()
-        .map(|pixel| pixel.variance())
-        .sum::<f64>()
-        .sqrt()
-        / n;
-    (mean, error)
-}
-
 /// From straight above to a tenth of a degree, from below, and from inside.
 fn cameras() -> Vec<(String, Camera)> {
     let at = Vec3::new(7.3, 5.1, 0.0);
@@ -86,7 +72,7 @@ fn white_cloth_in_even_light_cannot_be_seen() {
     for family in FAMILIES {
         for (name, camera) in cameras() {
             let outcome = look(family, WHITE, &camera, dome(), how_many(2, 32) as u32);
-            let (mean, _) = mean(&outcome);
+            let (mean, _) = outcome.film.mean_luminance();
             // Those that are given up are missing, and they are few.
             let lost = outcome.counters.capped_walks as f64 / outcome.counters.paths as f64;
             println!("{family:?} {name}: {mean:.5}, {lost:.5} given up");
@@ -98,7 +84,8 @@ fn white_cloth_in_even_light_cannot_be_seen() {
     }
     // Control: grey cloth is seen.
     let (_, face) = &cameras()[0];
-    let (grey, _) = mean(&look(Family::Cotton, Srgb(240, 240, 240), face, dome(), 8));
+    let grey = look(Family::Cotton, Srgb(240, 240, 240), face, dome(), 8);
+    let (grey, _) = grey.film.mean_luminance();
     assert!(grey < 0.95, "{grey}");
 }
 
@@ -111,7 +98,8 @@ fn white_cloth_under_a_picture_cannot_be_seen() {
     for family in FAMILIES.into_iter().take(families) {
         for (name, camera) in cameras() {
             let spp = how_many(16, 512) as u32;
-            let (mean, error) = mean(&look(family, WHITE, &camera, sky.clone(), spp));
+            let outcome = look(family, WHITE, &camera, sky.clone(), spp);
+            let (mean, error) = outcome.film.mean_luminance();
             println!("{family:?} {name}: {mean:.4} ± {error:.4}");
             assert!(
                 (mean - 1.0).abs() < 4.5 * error + 1e-3,

@@ -60,9 +60,7 @@ fn still(engine: &dyn Engine, design: &Arc<Design>, request: &StillRequest) -> S
 
 /// Mean luminance of the picture.
 fn light(engine: &dyn Engine, design: &Arc<Design>, request: &StillRequest) -> f64 {
-    let still = still(engine, design, request);
-    let pixels = still.film.pixels();
-    pixels.iter().map(|pixel| pixel.luminance()).sum::<f64>() / pixels.len() as f64
+    still(engine, design, request).film.mean_luminance().0
 }
 
 #[test]

@@ -486,21 +486,7 @@ fn white_furnace_is_one() {
                 ..settings.clone()
             };
             let outcome = shoot(&grid, &camera, &sampled, &opaque);
-            let n = outcome.film.pixels().len() as f64;
-            let mean = outcome
-                .film
-                .pixels()
-                .iter()
-                .map(|p| p.luminance())
-                .sum::<f64>()
-                / n;
-            let variance = outcome
-                .film
-                .pixels()
-                .iter()
-                .map(|p| p.variance())
-                .sum::<f64>();
-            let error = variance.sqrt() / n;
+            let (mean, error) = outcome.film.mean_luminance();
             assert!(
                 (mean - 1.0).abs() < 4.5 * error + 1e-4,
                 "α {alpha} fibre {fibre}: {mean} ± {error}"

@@ -273,7 +273,7 @@ impl App {
             &Status {
                 design: document.map(|document| document.design().as_ref()),
                 shown: self.preview.pane.shown.as_ref(),
-                foretold: self.preview.pane.foretold(),
+                foretold: &|| self.preview.pane.foretold(),
                 phase: &phase,
                 building: self.preview.building(),
                 paused: self.preview.paused,

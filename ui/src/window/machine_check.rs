@@ -56,10 +56,10 @@ impl MachineCheck {
             self.list_ui(ui);
             self.outcome_ui(ui);
             ui.horizontal(|ui| {
-                let verdicts = self.verdicts().clone();
-                let copy = ui.add_enabled(!verdicts.is_empty(), egui::Button::new("Copy"));
+                let some = !self.verdicts().is_empty();
+                let copy = ui.add_enabled(some, egui::Button::new("Copy"));
                 if copy.on_hover_text("The table, for a report").clicked() {
-                    ui.ctx().copy_text(table(&verdicts));
+                    ui.ctx().copy_text(table(&self.verdicts()));
                 }
                 if ui.button("Close").clicked() {
                     open = false;

@@ -15,8 +15,8 @@ use crate::tokens::{self, Palette};
 pub struct Status<'s> {
     pub design: Option<&'s Design>,
     pub shown: Option<&'s Shown>,
-    /// When it will be how good, and how good such forecasts were.
-    pub foretold: Vec<String>,
+    /// Says when it will be how good, and how good such forecasts were.
+    pub foretold: &'s dyn Fn() -> Vec<String>,
     pub phase: &'s Phase,
     pub building: Option<Building>,
     pub paused: bool,
@@ -101,10 +101,11 @@ fn preview_ui(ui: &mut egui::Ui, status: &Status<'_>) -> bool {
     } else if let Some(shown) = status.shown {
         let about = "The error is that of single pixels before denoising. What is shown is \
                      denoised, and of squares of 4 × 4 pixels the error is a quarter.";
-        let foretold = status.foretold.iter().map(String::as_str);
-        let about: Vec<&str> = std::iter::once(about).chain(foretold).collect();
-        ui.label(quality(shown, status))
-            .on_hover_text(about.join("\n\n"));
+        ui.label(quality(shown, status)).on_hover_ui(|ui| {
+            let foretold = (status.foretold)();
+            let about = std::iter::once(about.to_owned()).chain(foretold);
+            ui.label(about.collect::<Vec<_>>().join("\n\n"));
+        });
         if status.working.is_some() {
             // Something moves, however long the next picture takes.
             ui.ctx().request_repaint_after(Duration::from_secs(1));
