@@ -57,6 +57,7 @@
 //! | [`hash`] | a stable hash of what is said | – |
 //! | [`random`] | random numbers that are a hash of where they are used | `hash` |
 //! | [`job`] | progress, cancelling, deadlines | – |
+//! | [`clock`] | what passed, and what processors worked | – |
 //! | [`limits`] | sizes beyond which nothing is tried | – |
 //! | [`memory`] | one budget for what files and users ask for | – |
 //! | [`text`] | texts of files, made safe to show | – |
@@ -67,7 +68,7 @@
 //! | [`exemplar`] | voxels to copy from | `job` `limits` `memory` `atomic` `design` `yarn` `synthesis` |
 //! | [`scene`] | rays, cameras, lights, skies | `random` |
 //! | [`film`] | sums of paths, their error, the picture made of them | `job` `scene` |
-//! | [`render`] | traces any medium into a film | `random` `job` `scene` `film` |
+//! | [`render`] | traces any medium into a film | `random` `job` `clock` `scene` `film` |
 //! | [`volume`] | voxels in a grid, as a medium | `scene` `render` |
 //! | [`cloth`] | the implicit volume of a design | `random` `job` `memory` `design` `yarn` `synthesis` `exemplar` `scene` `render` `volume` |
 //! | [`posterise`] | a photograph becomes weaves | `job` `memory` `design` `cloth` |
@@ -78,11 +79,12 @@
 //! | [`plan`] | what a picture simulates, and how closely | `limits` `synthesis` `exemplar` `render` `cloth` `formats` |
 //! | [`engine`] | draws a design: the table of engines, stills, sheets | `random` `job` `limits` `memory` `text` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `cloth` `formats` `plan` |
 //! | [`needs`] | which effects a picture calls for | `random` `job` `design` `exemplar` `scene` `film` `render` `cloth` `plan` `engine` |
-//! | [`accuracy`] | what each dial's settings cost and how wrong they are, measured | `random` `job` `atomic` `design` `synthesis` `exemplar` `scene` `film` `cloth` `formats` `plan` `engine` |
+//! | [`accuracy`] | what each dial's settings cost and how wrong they are, measured | `random` `job` `clock` `limits` `atomic` `design` `synthesis` `exemplar` `scene` `film` `cloth` `formats` `plan` `engine` |
 //! | [`selftest`] | hard cases, tried on a user's machine | `hash` `random` `job` `design` `synthesis` `exemplar` `scene` `film` `render` `volume` `formats` `edit` `presets` `plan` `engine` |
 
 pub mod accuracy;
 pub mod atomic;
+pub mod clock;
 pub mod cloth;
 pub mod design;
 pub mod edit;

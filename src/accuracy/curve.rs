@@ -14,6 +14,9 @@ pub struct Accuracy {
     pub design: String,
     /// The picture that the times are of, as options of a command line.
     pub picture: String,
+    /// Paths a pixel of that picture; 0 where an older program did not say.
+    #[serde(default)]
+    pub spp: u32,
     /// Where it was measured.
     pub machine: Machine,
     /// Pixels of the piece that was traced, across and down.

@@ -7,12 +7,13 @@ use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 use super::AccuracyError;
 use super::axis::{Asked, Axis};
-use super::clock::Took;
 use super::curve::{Accuracy, Curve, Machine, Point, Trial};
 use super::difference::{self, BLOCK, Frame};
 use super::estimate::Estimate;
+use super::picture::{options, paths_asked, with_paths};
 use super::studio::{Exposing, Studio, Take, Takes, piece};
 use super::woven::{Synthesised, Woven};
+use crate::clock::Took;
 use crate::cloth::ClothSettings;
 use crate::design::Design;
 use crate::exemplar::ExemplarStore;
@@ -140,6 +141,7 @@ pub fn measure(
         key,
         design: design.name.clone(),
         picture: options(&asked),
+        spp: paths_asked(&asked),
         machine: machine(),
         piece: [piece.width, piece.height],
         piece_mm: piece.width_mm.unwrap_or_default().into(),
@@ -183,27 +185,6 @@ pub fn measure(
         }
     }
     Ok(accuracy)
-}
-
-/// The same picture with as many paths as it is asked for with: no time or error ends it, as
-/// that would depend on what is measured.
-fn with_paths(asked: &Asked) -> Asked {
-    let mut asked = asked.clone();
-    let stop = &mut asked.request.stop;
-    stop.spp = stop.spp.or(Some(asked.request.settings.render.spp));
-    (stop.seconds, stop.error) = (None, None);
-    asked
-}
-
-/// The picture as options of a command line, as [`Accuracy::picture`] says them.
-pub fn options(asked: &Asked) -> String {
-    let spp = asked
-        .request
-        .stop
-        .spp
-        .unwrap_or(asked.request.settings.render.spp);
-    let still = crate::engine::options(&asked.request, asked.renderer.name, Some(spp));
-    still.trim().to_owned()
 }
 
 impl Measuring {
@@ -526,7 +507,9 @@ impl<'d> Bench<'d> {
         let paths = self.paths(runs.spp);
         for (value, takes) in ladder.iter().zip(&all) {
             let noise = self.noise(&takes.traced(), paths);
-            points.push(self.point(value, &takes.0, paths, noise));
+            let mut point = self.point(value, &takes.0, paths, noise);
+            point.delta_e = self.grain(takes, paths);
+            points.push(point);
         }
         Ok((points, self.crops(&all)))
     }
@@ -559,6 +542,7 @@ impl<'d> Bench<'d> {
             let paths = Paths::new(*taken, wanted);
             let noise = self.noise(&takes.traced(), paths);
             let mut point = self.point(value, &takes.0, paths, noise);
+            point.delta_e = self.grain(takes, paths);
             point.measured = measured;
             points.push(point);
         }
@@ -782,6 +766,29 @@ impl<'d> Bench<'d> {
     fn noise(&self, traced: &[difference::Pixels], paths: Paths) -> Estimate {
         let power = difference::power(traced);
         difference::noise(traced, power, self.frame).scaled(paths.fewer().sqrt())
+    }
+
+    /// What an eye at 30 cm sees of the noise of pictures with all their paths, mean ΔE₀₀: how
+    /// far each of those that were taken is from the mean of the others, whose own noise is
+    /// taken off; small differences of colour fall with the root of their number as the noise
+    /// does. `None` where there is one picture alone.
+    fn grain(&self, takes: &Takes, paths: Paths) -> Option<f64> {
+        let (traced, count) = (takes.traced(), takes.0.len());
+        if count < 2 {
+            return None;
+        }
+        let far = |pixels: &difference::Pixels| {
+            let shown = takes.shown(self.frame.width, pixels, self.tone);
+            shown.at_reading_distance(self.pixels_per_mm)
+        };
+        let apart = (0..count).map(|own| {
+            let others = (0..count).filter(|other| *other != own);
+            let others: Vec<_> = others.map(|other| traced[other].clone()).collect();
+            let others = far(&difference::mean(&others));
+            far(&traced[own]).difference(&others).delta_e
+        });
+        let own = 1.0 + 1.0 / (count - 1) as f64;
+        Some(apart.sum::<f64>() / count as f64 / own.sqrt() * paths.fewer().sqrt())
     }
 
     /// The point of a setting from pictures of the piece: its time is that of the whole picture

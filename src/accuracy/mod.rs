@@ -11,25 +11,28 @@
 //! `plot.rs` as pictures.
 
 mod axis;
-mod clock;
 mod curve;
 mod difference;
 mod digits;
 mod estimate;
 mod front;
 mod measuring;
+mod model;
+mod picture;
 mod plot;
 mod report;
 mod seen;
 mod studio;
+mod within;
 mod woven;
 
 pub use axis::{Asked, Axis};
 pub use curve::{Accuracy, Curve, Machine, Point, Trial};
 pub use digits::number;
 pub use estimate::Estimate;
-pub use front::Choice;
-pub use measuring::{Crops, Effort, Measuring, measure, options};
+pub use measuring::{Crops, Effort, Measuring, measure};
+pub use model::Choice;
+pub use picture::options;
 pub use report::{markdown, read, write};
 pub use seen::EYE_MM;
 pub use woven::{Synthesised, Woven};

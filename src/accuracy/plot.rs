@@ -12,7 +12,7 @@ use plotters::style::{FontStyle, register_font};
 use super::AccuracyError;
 use super::curve::{Accuracy, Curve, Point};
 use super::digits::number;
-use super::front::Choice;
+use super::model::Choice;
 use crate::atomic;
 use crate::film::Picture;
 use crate::formats::png::{self, Depth, Metadata};

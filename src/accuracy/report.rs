@@ -258,6 +258,7 @@ mod tests {
             key: "k".to_owned(),
             design: "denim".to_owned(),
             picture: "--size 640x480".to_owned(),
+            spp: 8,
             machine: Machine {
                 system: "linux".to_owned(),
                 threads: 2,

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::AccuracyError;
 use super::axis::Asked;
-use super::clock::{Clock, Took};
 use super::difference::Pixels;
 use super::seen::Shown;
+use crate::clock::{Clock, Took};
 use crate::cloth::ClothSettings;
 use crate::design::Design;
 use crate::engine::{self, Engine, Shot, StillRequest};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::AccuracyError;
-use super::clock::{Clock, Took};
+use crate::clock::{Clock, Took};
 use crate::cloth::{ClothSettings, ClothVolume, YarnClasses};
 use crate::design::{Design, Lattice, Repeat};
 use crate::exemplar::{ExemplarSet, ExemplarStore};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::job::Job;
-use crate::plan::{DialError, EffectChoice, Plan, Planned, Settings, Subject};
+use crate::plan::{Budget, DialError, EffectChoice, Plan, Planned, Settings, Subject};
 use crate::render::Backing;
 use crate::scene::{PRESET_NAMES, Pose, View};
 
@@ -79,6 +79,23 @@ pub struct Stop {
 }
 
 impl Stop {
+    /// When a budget is used up, of a picture that is wrong by `bias` whatever its paths: at its
+    /// seconds, or once its noise is what is left of its error. A colour difference ends none.
+    pub fn within(budget: Budget, bias: f64) -> Self {
+        let noise = |error: f64| (error * error - bias * bias).max(1e-12).sqrt();
+        Self {
+            spp: None,
+            seconds: match budget {
+                Budget::Seconds(seconds) => Some(seconds),
+                _ => None,
+            },
+            error: match budget {
+                Budget::Error(error) => Some(noise(error)),
+                _ => None,
+            },
+        }
+    }
+
     /// A job that ends when the seconds have passed from now on, or when it did before.
     pub(super) fn bounds(&self, job: &Job) -> Job {
         let time = self

@@ -8,17 +8,17 @@
 //! a design or a light are left out with a bound of nothing. [`survey`] looks at all others too,
 //! with and without: that says what they change and cost, but not to a per cent, so that they
 //! are never left out by that; [`survey_in_pictures`] shows it as well. [`afford`] does for a
-//! [`Budget`] of time or of error what `settle` does for a tolerance, and says beforehand what
+//! [`Budget`](crate::plan::Budget) of time or of error what `settle` does for a tolerance, and says beforehand what
 //! the picture will come to.
 
+mod afford;
 mod block_change;
-mod budget;
 mod pair;
 mod settling;
 mod survey;
 
+pub use afford::{Promise, afford};
 pub use block_change::upper_percentile;
-pub use budget::{Budget, Promise, afford};
 pub use pair::Pair;
 pub use settling::{Need, Needs, at_most, settle};
 pub use survey::{survey, survey_in_pictures};

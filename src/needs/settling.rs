@@ -14,6 +14,8 @@ use crate::scene::light::{LightRig, Sky};
 pub(super) const BLOCKS: u32 = 192;
 /// Paths a pixel of a look.
 const SPP: u32 = 16;
+/// Changes below this share of a look's noise are not told apart from it.
+const HIDDEN: f64 = 0.5;
 
 /// What was found out about one effect.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,8 +35,32 @@ pub struct Need {
     /// What leaving it out changes, root mean square over the blocks, free of noise; `None` where
     /// it was not looked at.
     pub change: Option<f64>,
+    /// What two looks at the same places do not agree in, root mean square: changes far below
+    /// it are not seen. `None` where it was not looked at twice.
+    pub noise: Option<f64>,
     /// Share of the tracing that it takes; of what is left out, that it would take.
     pub cost: Option<f64>,
+    /// The least and the most that it was, look by look; `None` where it follows from counts.
+    pub cost_interval: Option<[f64; 2]>,
+}
+
+impl Need {
+    /// What leaving it out changes, in words; `None` where it was not looked at.
+    pub fn changes(&self) -> Option<String> {
+        let (change, bound) = (self.change?, self.bound?);
+        let hidden = self.noise.filter(|noise| change < HIDDEN * noise);
+        Some(match hidden {
+            Some(noise) => format!(
+                "a place changes by less than the noise of this look, {}",
+                at_most(noise)
+            ),
+            None => format!(
+                "a place typically changes by {}, 95 of 100 by {} at most",
+                at_most(change),
+                at_most(bound)
+            ),
+        })
+    }
 }
 
 /// What a picture calls for.
@@ -227,7 +253,9 @@ fn planned(plan: &Plan) -> Vec<Need> {
         why: planned.why.clone().into_owned(),
         bound: None,
         change: None,
+        noise: None,
         cost: None,
+        cost_interval: None,
     });
     needs.collect()
 }

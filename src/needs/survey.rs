@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::block_change::{DARK, common, upper_percentile};
 use super::pair::{Pair, Pairing};
-use super::settling::{BLOCKS, Eye, Need, Needs, at_most, settle_by};
+use super::settling::{BLOCKS, Eye, Need, Needs, settle_by};
 use crate::design::Design;
 use crate::engine::{Engine, Renderer, StillError, StillRequest};
 use crate::exemplar::ExemplarStore;
@@ -172,9 +172,15 @@ impl Surveying<'_> {
         };
         let (one, other) = (change(0), change(1));
         let change = common(&one, &other);
-        let seconds = |looks: &Looks| looks[0].seconds.min(looks[1].seconds);
         need.change = Some(change);
-        need.cost = Some(1.0 - seconds(without) / seconds(with).max(1e-9));
+        let apart: Vec<f64> = (one.iter().zip(&other))
+            .map(|(one, other)| 0.5 * (one - other))
+            .collect();
+        need.noise = Some(common(&apart, &apart));
+        let [with, without] = [work(with), work(without)];
+        let saved = |without: f64, with: f64| 1.0 - without / with.max(1e-9);
+        need.cost = Some(saved(without[0], with[0]));
+        need.cost_interval = Some([saved(without[1], with[0]), saved(without[0], with[1])]);
         if need.bound.is_none() {
             let both: Vec<f64> = (one.iter().zip(&other))
                 .map(|(one, other)| (0.5 * (one + other)).abs())
@@ -182,26 +188,30 @@ impl Surveying<'_> {
             let bound = upper_percentile(&both);
             need.bound = Some(bound);
             if need.by == Decider::Scene {
-                need.why = reason(need.effect, change, bound);
+                let changes = need.changes().unwrap_or_default();
+                need.why = format!("{}: {changes}", lacking(need.effect));
             }
         }
         Ok(())
     }
 }
 
-/// Why an effect is on.
-fn reason(effect: Effect, change: f64, bound: f64) -> String {
-    let without = match effect {
+/// What two looks took, the shorter one first: seconds of processors where the system tells
+/// them, as other programs have no share in these.
+fn work(looks: &Looks) -> [f64; 2] {
+    let of = |seen: &BlocksSeen| seen.took.processor_seconds.unwrap_or(seen.took.seconds);
+    let [one, other] = [of(&looks[0]), of(&looks[1])];
+    [one.min(other), one.max(other)]
+}
+
+/// What a picture is like without an effect.
+fn lacking(effect: Effect) -> &'static str {
+    match effect {
         Effect::Shadows => "without them places are lit alike, and too bright",
         Effect::Hairs => "without them the faces are bare",
         Effect::EdgeFixing => "without it yarns break at the borders of crossings",
         Effect::Randomisation => "without it every repeat looks the same",
         Effect::Tap => "without it voxels show as steps",
         Effect::Multiple | Effect::Sky => "without it there is less light",
-    };
-    format!(
-        "{without}: a place changes by {} on average, 95 of 100 by {} at most",
-        at_most(change),
-        at_most(bound)
-    )
+    }
 }

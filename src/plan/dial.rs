@@ -78,6 +78,8 @@ impl Measure {
 pub struct Dial {
     /// Its name for `--set`.
     pub name: &'static str,
+    /// What somebody calls it who does not know the command line.
+    pub title: &'static str,
     /// What it approximates.
     pub about: &'static str,
     /// Values it takes, in words.

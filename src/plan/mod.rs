@@ -6,11 +6,13 @@
 //! it ([`Plan::limited_to`]); reports say it too. Names and texts stand in two tables, [`DIALS`]
 //! and [`Effect`], which serve the command line, its help and reports.
 
+mod budget;
 mod dial;
 mod dials;
 mod effect;
 mod settings;
 
+pub use budget::Budget;
 pub use dial::{Dial, DialError, Invalidates, Measure};
 pub use dials::{DIALS, check, dial};
 pub use effect::{

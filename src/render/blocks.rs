@@ -7,7 +7,6 @@
 //! than a few per cent.
 
 use std::cell::Cell;
-use std::time::Instant;
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -18,6 +17,7 @@ use super::medium::Arrival;
 use super::path::{Path, Tally};
 use super::settings::RenderSettings;
 use super::track::Scatterer;
+use crate::clock::{Clock, Took};
 use crate::film::{Film, Pixel};
 use crate::job::{Cancelled, Job};
 use crate::random::Random;
@@ -60,8 +60,8 @@ pub struct BlocksSeen {
     pub flights: Vec<u64>,
     /// What went on.
     pub counters: Counters,
-    /// Seconds that passed.
-    pub seconds: f64,
+    /// What it took.
+    pub took: Took,
 }
 
 impl BlocksSeen {
@@ -145,7 +145,7 @@ impl WithPath for Looking<'_> {
         self,
         path: &Path<'_, S, E, SHADOWS, PLANE>,
     ) -> Self::Output {
-        let begun = Instant::now();
+        let begun = Clock::now();
         let rows = BLOCK * self.corners.len() as u32;
         let mut film = Film::new(BLOCK, rows);
         let blocks = film.pixels_mut().par_chunks_mut((BLOCK * BLOCK) as usize);
@@ -168,7 +168,7 @@ impl WithPath for Looking<'_> {
             light,
             flights,
             counters,
-            seconds: begun.elapsed().as_secs_f64(),
+            took: begun.took(),
         })
     }
 }

@@ -1,11 +1,8 @@
 //! Where each hard case is tried: a test by name, or a case of the program.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
-use std::collections::HashSet;
-use std::path::Path;
-
 use pickglass::selftest::CASES;
+
+use crate::named_tests::is_test;
 
 /// What is hard, and what tries it: `file::test`, or the name of a case of the program.
 const LIST: &[(&str, &[&str])] = &[
@@ -183,26 +180,9 @@ const LIST: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// The functions of a file that are tests.
-fn tests_of(file: &str) -> HashSet<String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
-    let parsed = syn::parse_file(&text).unwrap();
-    let is_test = |item: &syn::ItemFn| item.attrs.iter().any(|a| a.path().is_ident("test"));
-    (parsed.items.iter())
-        .filter_map(|item| match item {
-            syn::Item::Fn(function) if is_test(function) => Some(function.sig.ident.to_string()),
-            _ => None,
-        })
-        .collect()
-}
-
 /// Whether what tries a case is there.
 fn is_there(tried_by: &str) -> bool {
-    match tried_by.split_once("::") {
-        Some((file, name)) => tests_of(file).contains(name),
-        None => CASES.iter().any(|case| case.name == tried_by),
-    }
+    is_test(tried_by) || CASES.iter().any(|case| case.name == tried_by)
 }
 
 #[test]
@@ -222,5 +202,5 @@ fn every_hard_case_has_what_tries_it() {
     }
     // Control: what is not there is told.
     assert!(!is_there("no-such-case"));
-    assert!(!is_there("tests/hard_cases/list.rs::tests_of"));
+    assert!(!is_there("tests/hard_cases/list.rs::is_there"));
 }

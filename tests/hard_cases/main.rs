@@ -4,6 +4,8 @@
 
 #[path = "../common/cloth_scenes/mod.rs"]
 mod cloth_scenes;
+#[path = "../common/named_tests/mod.rs"]
+mod named_tests;
 
 mod designs;
 mod eyes_and_lights;

@@ -73,59 +73,131 @@ fn no_larger(one: &Point, other: &Point) -> bool {
     low <= high
 }
 
+/// What theory says of curves, of those that are there; the first thing that is not so.
+fn what_theory_says(accuracy: &Accuracy) -> Result<(), String> {
+    let all = |name: &str| {
+        let known = accuracy.dials.iter().find(|curve| curve.name == name);
+        known.map_or(&[][..], |curve| &curve.settings)
+    };
+    let says = |holds: bool, what: &str| match holds {
+        true => Ok(()),
+        false => Err(what.to_owned()),
+    };
+    // A reference is not wrong against itself.
+    for curve in &accuracy.dials {
+        let last = &curve.settings[curve.settings.len() - 1];
+        let is_none = curve.measure != Measure::Bias || last.error == 0.0;
+        says(is_none, &format!("{}: its reference is wrong", curve.name))?;
+        let sound = |point: &Point| point.seconds > 0.0 && point.error >= 0.0;
+        says(
+            curve.settings.iter().all(sound),
+            "times and errors are no numbers",
+        )?;
+    }
+    // Each further scattering brings light that was missing before, and takes time.
+    let order = all("order");
+    for pair in order.windows(2) {
+        says(no_larger(&pair[1], &pair[0]), &format!("order: {pair:?}"))?;
+    }
+    if let [first, .., last] = order {
+        says(first.error > 0.1, "single scattering alone is dark")?;
+        says(first.seconds < last.seconds, "single scattering is quick")?;
+    }
+    // Paths are independent: noise falls with the root of their number, and time is theirs.
+    let paths = |point: &Point| point.value.parse::<f64>().unwrap_or(f64::NAN);
+    for pair in all("spp").windows(2) {
+        let times = paths(&pair[1]) / paths(&pair[0]);
+        let ratio = pair[0].error / pair[1].error / times.sqrt();
+        says(
+            (ratio - 1.0).abs() < 0.25,
+            &format!("spp: {ratio} {pair:?}"),
+        )?;
+        let longer = pair[1].seconds / pair[0].seconds / times;
+        says(
+            (0.4..2.5).contains(&longer),
+            &format!("spp: {longer} {pair:?}"),
+        )?;
+    }
+    // The method that finds the optimum is no worse than the others, a closer rank or patch
+    // than a coarser one.
+    for (name, slack) in [("method", 1.0), ("rank", 1.001)] {
+        let falls = (all(name).windows(2)).all(|pair| pair[1].error <= pair[0].error * slack);
+        says(falls, &format!("{name}: {:?}", all(name)))?;
+    }
+    if let [never, .., always] = all("patch") {
+        says(
+            never.error == 1.0,
+            "without patches each repeat is the next",
+        )?;
+        says(always.error < 0.6, "patches leave repeats")?;
+    }
+    // Rounding to steps of 1/255 loses 1/√12 of a step.
+    if let [eight, ..] = all("png-bits") {
+        let steps = eight.error * 255.0 * 12f64.sqrt();
+        says((steps - 1.0).abs() < 0.1, &format!("png-bits: {steps}"))?;
+    }
+    Ok(())
+}
+
 #[test]
 fn curves_fall_where_theory_says_so() {
     let accuracy = measured(&["method", "rank", "patch", "order", "spp", "png-bits"]);
-    // Each further scattering brings light that was missing before.
+    assert_eq!(what_theory_says(&accuracy), Ok(()));
     let order = &curve(&accuracy, "order").settings;
-    for pair in order.windows(2) {
-        assert!(no_larger(&pair[1], &pair[0]), "{pair:?}");
-    }
-    assert!(
-        order[0].error > 0.1,
-        "single scattering alone is dark: {:?}",
-        order[0]
-    );
     assert!(order[0].delta_e > order[3].delta_e, "{order:?}");
-    assert_eq!(point(&accuracy, "order", "1024").error, 0.0);
-    // Paths are independent: noise falls with the root of their number. How many are measured
-    // depends on the machine: the first two are on any.
-    let measured: Vec<&Point> = (curve(&accuracy, "spp").settings.iter())
-        .filter(|point| point.measured)
-        .collect();
-    assert!(measured.len() >= 2, "{measured:?}");
-    for pair in measured.windows(2) {
-        let [few, many]: [f64; 2] = [0, 1].map(|at: usize| pair[at].value.parse().expect("paths"));
-        let times = many / few;
-        let ratio = pair[0].error / pair[1].error / times.sqrt();
-        assert!((ratio - 1.0).abs() < 0.25, "{pair:?}: {ratio}");
-    }
-    assert!(!point(&accuracy, "spp", "4096").measured);
-    // The method that finds the optimum is no worse than the others.
     let method = &curve(&accuracy, "method").settings;
-    assert!(method[2].error <= method[1].error && method[1].error <= method[0].error);
     assert!(method[0].error > method[2].error + 0.01, "{method:?}");
-    let seams: Vec<f64> = curve(&accuracy, "rank")
-        .settings
-        .iter()
-        .map(|p| p.error)
-        .collect();
-    assert!(
-        seams.windows(2).all(|pair| pair[1] <= pair[0] * 1.001),
-        "{seams:?}"
-    );
-    assert_eq!(
-        point(&accuracy, "patch", "0").error,
-        1.0,
-        "each repeat is the next"
-    );
-    assert!(point(&accuracy, "patch", "3").error < 0.6);
-    // Rounding to steps of 1/255 loses 1/√12 of a step.
-    let rounding = point(&accuracy, "png-bits", "8").error;
-    assert!(
-        (rounding * 255.0 * 12f64.sqrt() - 1.0).abs() < 0.1,
-        "{rounding}"
-    );
+    // How many are measured depends on the machine: the first two are on any.
+    let spp = &curve(&accuracy, "spp").settings;
+    let measured = spp.iter().filter(|point| point.measured).count();
+    assert!(measured >= 2, "{spp:?}");
+    assert!(!point(&accuracy, "spp", "4096").measured);
+
+    // Measurements that are deliberately wrong are noticed, each by what it gets wrong.
+    let wrong: [(&str, &str, fn(&mut Accuracy)); 6] = [
+        ("order", "two settings exchanged", |accuracy| {
+            let settings = &mut of(accuracy, "order").settings;
+            let [one, other] = [settings[0].clone(), settings[4].clone()];
+            (settings[0].error, settings[0].error_interval) = (other.error, other.error_interval);
+            (settings[4].error, settings[4].error_interval) = (one.error, one.error_interval);
+        }),
+        ("reference", "held against another picture", |accuracy| {
+            for point in &mut of(accuracy, "order").settings {
+                point.error += 0.02;
+            }
+        }),
+        ("spp", "noise as if paths were one", |accuracy| {
+            for point in &mut of(accuracy, "spp").settings {
+                point.error *= point.error;
+            }
+        }),
+        ("spp", "the time of one path for all", |accuracy| {
+            let settings = &mut of(accuracy, "spp").settings;
+            let one = settings[0].seconds;
+            settings.iter_mut().for_each(|point| point.seconds = one);
+        }),
+        (
+            "method",
+            "the crude end taken for the reference",
+            |accuracy| {
+                of(accuracy, "method").settings.reverse();
+            },
+        ),
+        ("png-bits", "a wrong number of steps", |accuracy| {
+            of(accuracy, "png-bits").settings[0].error *= 2.0;
+        }),
+    ];
+    for (told, what, spoil) in wrong {
+        let mut spoiled = accuracy.clone();
+        spoil(&mut spoiled);
+        let said = what_theory_says(&spoiled).expect_err(what);
+        assert!(said.contains(told), "{what}: {said}");
+    }
+}
+
+fn of<'a>(accuracy: &'a mut Accuracy, name: &str) -> &'a mut Curve {
+    let found = accuracy.dials.iter_mut().find(|curve| curve.name == name);
+    found.expect(name)
 }
 
 #[test]

@@ -610,3 +610,76 @@ fn trilinear_taps_are_trilinear_in_the_mean() {
         assert!(stretch.majorant >= walk.voxel(t, Vec3::splat(0.999), 0.0).sigma);
     }
 }
+
+/// A cube of 6³ random voxels, `times` as fine along each axis by interpolation between them,
+/// or as they are with taps. Absorbs whatever meets it.
+fn interpolated(times: u32, taps: Taps) -> DenseGrid {
+    const N: u32 = 6;
+    let sigma_of = |c: [i32; 3]| {
+        let [x, y, z] = c.map(|c| c.clamp(0, N as i32 - 1) as u64);
+        12.0 * Random::new(3, x + 10 * y, z).uniform().powi(3)
+    };
+    let bounds = Bounds {
+        min: Vec3::splat(-0.5),
+        max: Vec3::splat(0.5),
+    };
+    let optics = vec![Optics {
+        albedo: Vec3::ZERO,
+        alpha: 1.0,
+    }];
+    DenseGrid::from_fn(UVec3::splat(times * N), bounds, optics, taps, |c| {
+        // In voxels of the coarse grid, from the middle of its first.
+        let at = (c.as_vec3() + 0.5) / times as f32 - 0.5;
+        let (low, share) = (at.floor().as_ivec3(), at - at.floor());
+        let mut sigma = 0.0;
+        for corner in 0..8 {
+            let step = [corner & 1, corner >> 1 & 1, corner >> 2 & 1];
+            let weight = (0..3).map(|axis| match step[axis] {
+                1 => share[axis],
+                _ => 1.0 - share[axis],
+            });
+            let place = [low.x + step[0], low.y + step[1], low.z + step[2]];
+            sigma += weight.product::<f32>() * sigma_of(place);
+        }
+        GridVoxel {
+            sigma,
+            direction: Vec3::Z,
+            optics: 0,
+        }
+    })
+    .expect("sound")
+}
+
+/// What is seen of it, pixel by pixel.
+fn coverage(grid: &DenseGrid) -> Vec<f64> {
+    let camera = View::Oblique.camera(Vec3::ZERO, 0.8, 14, 14);
+    let lights = LightRig::new("dark", Vec::new(), Sky::Dark);
+    let settings = RenderSettings {
+        spp: 6000,
+        background: Background::Transparent,
+        ..RenderSettings::default()
+    };
+    let outcome = shoot(grid, &camera, &lights, &settings);
+    assert_eq!(outcome.counters.majorant_violations, 0);
+    (outcome.film.pixels().iter())
+        .map(|pixel| f64::from(pixel.alpha()))
+        .collect()
+}
+
+#[test]
+fn taps_are_finer_grids() {
+    let tapped = coverage(&interpolated(1, Taps::StochasticTrilinear));
+    let apart = |times| {
+        let finer = coverage(&interpolated(times, Taps::Nearest));
+        let squares = tapped
+            .iter()
+            .zip(&finer)
+            .map(|(one, other)| (one - other).powi(2));
+        (squares.sum::<f64>() / tapped.len() as f64).sqrt()
+    };
+    let [same, twice, four] = [1, 2, 4].map(apart);
+    // The noise of a pixel is 0.5 / √6000 at most, of both.
+    println!("same {same:.4}, twice {twice:.4}, four times {four:.4}");
+    assert!(four < 0.01 && four <= twice + 0.002, "{twice} {four}");
+    assert!(twice < 0.5 * same, "{same} {twice}");
+}

@@ -18,8 +18,7 @@ use pickglass::cloth::Region;
 use pickglass::engine::{Heading, LightChoice, RENDERERS};
 use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent, Key};
 use pickglass::formats::{self, Format};
-use pickglass::needs::Budget;
-use pickglass::plan::EffectChoice;
+use pickglass::plan::{Budget, EffectChoice};
 use pickglass::posterise::Fit;
 use pickglass::synthesis::Method;
 use pickglass::text::shell_word;
@@ -424,6 +423,10 @@ pub struct StillArgs {
     /// 2%, and say beforehand what the picture will come to
     #[arg(long, value_name = "TIME|ERROR", conflicts_with = "tolerance")]
     pub budget: Option<Budget>,
+    /// Choose all dials by what accuracy measured there of this picture, as ΔE too (dE1); spp
+    /// and dials of the picture are as they were measured
+    #[arg(long, value_name = "FOLDER", requires = "budget", value_hint = ValueHint::DirPath)]
+    pub curves: Option<PathBuf>,
     /// Leave out what changes 95 of 100 blocks of pixels by less, all of it together, as 1%
     #[arg(long, value_name = "T", value_parser = values::fraction)]
     pub tolerance: Option<f64>,

@@ -7,7 +7,7 @@ use anyhow::bail;
 use pickglass::engine::{Renderer, StillRequest};
 use pickglass::formats::image::Encoding;
 use pickglass::formats::{self, Kind, jc5};
-use pickglass::plan::{Effect, EffectBase, Subject};
+use pickglass::plan::{Budget, Effect, EffectBase, Subject};
 use pickglass::presets;
 use pickglass::render::Backing;
 
@@ -164,6 +164,12 @@ pub fn in_still(
     ];
     let stop = stops.into_iter().find(|(_, given)| *given);
     let stop = stop.map(|(flag, _)| flag);
+    if let (Some(budget @ Budget::DeltaE(_)), None) = (args.budget, &args.curves) {
+        bail!(
+            "--budget {budget}: a look at the picture says nothing of that: add --curves with a \
+             folder of pickglass accuracy, or give 20s or 2%"
+        );
+    }
     in_picture(&args.picture, stop, request, renderer, subject)?;
     let path = &args.output.0;
     let is_exr = (path.extension()).is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));

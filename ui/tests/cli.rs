@@ -527,6 +527,59 @@ fn accuracy_is_measured_into_a_folder_and_gone_on_from() {
 }
 
 #[test]
+fn measured_curves_choose_dials_by_a_budget() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let small = ["oxford", "--size", "24x16"];
+    let run = |command: &[&str], more: &[&str]| {
+        pickglass(folder.path(), &[command, &small, more].concat())
+    };
+    let dials = ["--dials", "order,spp", "--extent", "quick", "--spp", "4"];
+    let measured = json(&run(
+        &["accuracy", "-o", "curves"],
+        &[&dials[..], &["--json"]].concat(),
+    ));
+    assert_eq!(measured["spp"], 4);
+    let still = ["still", "-o", "a.png", "--curves", "curves"];
+    let made = json(&run(&still, &["--budget", "2s", "--json"]));
+    has_keys(
+        &made,
+        &[
+            "promise.seconds",
+            "promise.error",
+            "promise.bias",
+            "promise.delta_e",
+            "promise.spp",
+            "promise.settings.order",
+            "promise.settings.spp",
+        ],
+    );
+    assert!(made["promise"]["seconds"].as_f64().expect("seconds") <= 2.0);
+    // More error takes fewer paths, and a colour difference is a budget as well.
+    let paths = |budget: &str| {
+        let made = json(&run(&still, &["--budget", budget, "--json"]));
+        made["promise"]["spp"].as_u64().expect("paths")
+    };
+    assert!(paths("90%") < paths("30%"));
+    assert!(paths("dE20") <= paths("dE4"));
+    // Another picture, no curves, and what no curve says.
+    let other = refused(&run(&still, &["--budget", "2s", "--mm", "3"]), 1);
+    assert!(
+        other.contains("curves") && other.contains("Oxford"),
+        "{other}"
+    );
+    let none = run(
+        &["still", "-o", "a.png", "--curves", "none"],
+        &["--budget", "2s"],
+    );
+    assert!(refused(&none, 1).contains("nothing was measured"));
+    let good = refused(&run(&still, &["--budget", "0.001%"]), 1);
+    assert!(good.contains("--budget 0.001 %"), "{good}");
+    refused(&run(&still, &[]), 2);
+    let seen = refused(&run(&["still", "-o", "a.png"], &["--budget", "dE1"]), 1);
+    assert!(seen.contains("--curves"), "{seen}");
+}
+
+#[test]
 fn what_a_picture_calls_for_is_said_and_a_budget_is_promised() {
     let folder = tempfile::tempdir().expect("a folder");
     let small = ["silk-satin", "--size", "48x32", "--mm", "4"];

@@ -5,6 +5,7 @@ use crate::plan::dial::{Dial, Invalidates, Measure, always, number, switch, swit
 
 pub(super) static LEVEL: Dial = Dial {
     name: "level",
+    title: "Size of voxels",
     about: "coarseness of the voxels, each step twice as large",
     values: "4 to 0",
     ladder: &["4", "3", "2", "1", "0"],
@@ -23,6 +24,7 @@ pub(super) static LEVEL: Dial = Dial {
 
 pub(super) static LEVEL_CORRECTION: Dial = Dial {
     name: "level-correction",
+    title: "Light of coarse voxels",
     about: "coarse voxels are corrected for what averaging does to light",
     values: "off or on",
     ladder: &["off", "on"],

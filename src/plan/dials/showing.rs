@@ -5,6 +5,7 @@ use crate::plan::dial::{Dial, Invalidates, Measure, always, switch, switched};
 
 pub(super) static DENOISE: Dial = Dial {
     name: "denoise",
+    title: "Noise filter",
     about: "noise is filtered out of what is shown",
     values: "off or on",
     ladder: &["off", "on"],
@@ -23,6 +24,7 @@ pub(super) static DENOISE: Dial = Dial {
 
 pub(super) static PNG_BITS: Dial = Dial {
     name: "png-bits",
+    title: "Bits of a PNG",
     about: "bits of a sample of a PNG",
     values: "8 or 16",
     ladder: &["8", "16"],

@@ -6,6 +6,7 @@ use crate::synthesis::Rank;
 
 pub(super) static METHOD: Dial = Dial {
     name: "method",
+    title: "Choice of blocks",
     about: "how blocks are chosen for crossings",
     values: "naive, greedy or dp",
     ladder: &["naive", "greedy", "dp"],
@@ -24,6 +25,7 @@ pub(super) static METHOD: Dial = Dial {
 
 pub(super) static RANK: Dial = Dial {
     name: "rank",
+    title: "Closing of seams",
     about: "how finely seams between blocks are closed",
     values: "0 to 1000, or exact",
     ladder: &["0", "5", "15", "40", "exact"],
@@ -50,6 +52,7 @@ pub(super) static RANK: Dial = Dial {
 
 pub(super) static PATCH: Dial = Dial {
     name: "patch",
+    title: "Patches that vary",
     about: "edge of the patches that are randomised together, crossings",
     values: "0 to 64",
     ladder: &["0", "64", "8", "3", "1"],

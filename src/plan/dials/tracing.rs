@@ -7,6 +7,7 @@ use crate::render::Backing;
 
 pub(super) static ORDER: Dial = Dial {
     name: "order",
+    title: "Scatterings followed",
     about: "scatterings after which a path ends",
     values: "1 to 4096",
     ladder: &["1", "2", "4", "8", "16", "64", "256", "1024"],
@@ -25,6 +26,7 @@ pub(super) static ORDER: Dial = Dial {
 
 pub(super) static ROULETTE_ORDER: Dial = Dial {
     name: "roulette-order",
+    title: "Ending of faint paths",
     about: "scatterings after which paths play roulette",
     values: "1 to 4096, or never",
     ladder: &["1", "2", "4", "8", "16", "never"],
@@ -49,6 +51,7 @@ pub(super) static ROULETTE_ORDER: Dial = Dial {
 
 pub(super) static SHADOW_ROULETTE: Dial = Dial {
     name: "shadow-roulette",
+    title: "Ending of faint shadow rays",
     about: "radiance below which shadow rays play roulette",
     values: "1 to 0",
     ladder: &["1", "0.3", "0.1", "0.03", "0"],
@@ -68,6 +71,7 @@ pub(super) static SHADOW_ROULETTE: Dial = Dial {
 
 pub(super) static SPP: Dial = Dial {
     name: "spp",
+    title: "Paths a pixel",
     about: "paths a pixel, where nothing else ends the picture",
     values: "1 to 1000000",
     ladder: &["1", "4", "16", "64", "256", "1024", "4096"],
@@ -86,6 +90,7 @@ pub(super) static SPP: Dial = Dial {
 
 pub(super) static PASS_SPP: Dial = Dial {
     name: "pass-spp",
+    title: "Paths between two looks",
     about: "paths a pixel between two looks at the picture",
     values: "1 to 1024",
     ladder: &["1", "4", "16"],
@@ -104,6 +109,7 @@ pub(super) static PASS_SPP: Dial = Dial {
 
 pub(super) static BACKING_LAYERS: Dial = Dial {
     name: "backing-layers",
+    title: "Layers of cloth beneath",
     about: "layers of the cloth where it lies on itself",
     values: "1 to 16",
     ladder: &["1", "2", "4", "8", "16"],

@@ -13,6 +13,7 @@ use crate::interrupt::Interrupt;
 use crate::late::Late;
 use crate::opened::Opened;
 use crate::out::{self, Progress};
+use pickglass::accuracy::{self, Asked, Choice};
 use pickglass::design::Design;
 use pickglass::engine::{
     self, ALL_COLOURWAYS, Engine, Pass, Renderer, StillError, StillReport, StillRequest, Stop,
@@ -21,8 +22,8 @@ use pickglass::exemplar::ExemplarStore;
 use pickglass::formats::output;
 use pickglass::formats::volume::{self, VolumeFormat};
 use pickglass::job::Job;
-use pickglass::needs::{self, Budget, Needs, Promise};
-use pickglass::plan::{Settings, Subject};
+use pickglass::needs::{self, Needs, Promise};
+use pickglass::plan::{Budget, Settings, Subject};
 use pickglass::render::Backing;
 
 /// Longer than anybody waits: no end at all.
@@ -67,7 +68,14 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
     note_warnings(&opened.warnings);
     let request = request(args, Backing::Itself)?;
     idle::in_still(args, &request, renderer, Subject::Cloth)?;
-    let settling = Settling::of(args);
+    let (mut request, mut settling) = (request, Settling::of(args));
+    let mut chosen = None;
+    if let (Some(folder), Some(budget)) = (&args.curves, args.budget) {
+        let (asked, choice) = by_curves(folder, budget, (request, renderer), &opened.design)?;
+        (request, settling) = (asked, Settling::Nothing);
+        out::note(&chose(&choice));
+        chosen = Some(choice);
+    }
     if args.colourway.as_deref() == Some(ALL_COLOURWAYS) {
         if let Some(flag) = settling.flag() {
             anyhow::bail!("{flag}: colourways side by side are made alike: leave it out");
@@ -75,7 +83,10 @@ pub fn run(args: &StillArgs, begun: Instant) -> anyhow::Result<()> {
         return sheet(args, &opened, (&request, renderer), begun);
     }
     let picture = (&request, renderer);
-    let made = render_to(&opened, picture, settling, path, begun, source(args))?;
+    let mut made = render_to(&opened, picture, settling, path, begun, source(args))?;
+    if let Some(choice) = chosen {
+        made.settled = Settled::Choice(choice);
+    }
     made.tell(path, args.json)
 }
 
@@ -114,6 +125,8 @@ enum Settled {
     Nothing,
     Needs(Box<StillRequest>, Needs),
     Promise(Promise),
+    /// By curves.
+    Choice(Choice),
 }
 
 /// A picture that was made and written.
@@ -143,6 +156,19 @@ impl Made {
                     "bias": promise.bias,
                     "spp": promise.spp,
                     "order": promise.order,
+                });
+            }
+            Settled::Choice(choice) => {
+                let settings: serde_json::Map<String, Value> = (choice.settings.iter())
+                    .map(|(name, value)| (name.clone(), json!(value)))
+                    .collect();
+                report["promise"] = json!({
+                    "seconds": choice.seconds,
+                    "error": choice.error,
+                    "bias": choice.bias,
+                    "delta_e": choice.delta_e,
+                    "spp": choice.paths(),
+                    "settings": settings,
                 });
             }
         }
@@ -311,6 +337,59 @@ pub fn render_to(
     })
 }
 
+/// A picture with what the curves of `folder` say is the best use of a budget, and what that
+/// is.
+fn by_curves(
+    folder: &Path,
+    budget: Budget,
+    (request, renderer): (StillRequest, &'static Renderer),
+    design: &Design,
+) -> anyhow::Result<(StillRequest, Choice)> {
+    let shown = out::shown(folder);
+    let Some(measured) = accuracy::read(folder) else {
+        anyhow::bail!("{shown}: nothing was measured there: pickglass accuracy -o {shown}");
+    };
+    let asked = Asked { request, renderer };
+    if measured.design != design.name || !measured.is_of(&asked) {
+        anyhow::bail!(
+            "{shown}: what was measured there is of {}, {}: ask for that picture, or measure this \
+             one into another folder",
+            measured.design,
+            measured.picture
+        );
+    }
+    let Some(choice) = measured.within(budget) else {
+        anyhow::bail!(
+            "--budget {budget}: what was measured in {shown} has no settings for it: give a larger \
+             one, or measure more with accuracy --dials spp,order,denoise"
+        );
+    };
+    let mut request = choice.set(&asked)?.request;
+    request.stop = match budget {
+        Budget::Seconds(_) | Budget::Error(_) => Stop::within(budget, choice.bias),
+        Budget::DeltaE(_) => Stop {
+            spp: choice.paths(),
+            ..Stop::default()
+        },
+    };
+    Ok((request, choice))
+}
+
+/// What curves say that a picture will come to, for a person.
+fn chose(choice: &Choice) -> String {
+    let settings = choice.settings.iter();
+    let settings = settings.map(|(name, value)| format!("{name}={value}"));
+    let seen = choice
+        .delta_e
+        .map_or_else(String::new, |delta_e| format!(", ΔE {delta_e:.1}"));
+    format!(
+        "by the curves it will take {:.1} s once its cloth is made, error {:.1} %{seen}: {}",
+        choice.seconds,
+        100.0 * choice.error,
+        settings.collect::<Vec<_>>().join(" ")
+    )
+}
+
 /// What a picture will come to, for a person.
 fn promised(promise: &Promise) -> String {
     let bias = match promise.bias > 1e-4 {
@@ -410,16 +489,12 @@ fn source(args: &StillArgs) -> String {
 /// What is asked for, before `backing` where nothing is said of that.
 fn request(args: &StillArgs, backing: Backing) -> anyhow::Result<StillRequest> {
     let mut request = picture(&args.picture, backing)?;
+    let budget = args.budget.map(|budget| Stop::within(budget, 0.0));
+    let budget = budget.unwrap_or_default();
     request.stop = Stop {
         spp: args.picture.spp,
-        seconds: args.seconds.or(match args.budget {
-            Some(Budget::Seconds(seconds)) => Some(seconds),
-            _ => None,
-        }),
-        error: args.error.or(match args.budget {
-            Some(Budget::Error(error)) => Some(error),
-            _ => None,
-        }),
+        seconds: args.seconds.or(budget.seconds),
+        error: args.error.or(budget.error),
     };
     request.colourway.clone_from(&args.colourway);
     Ok(request)

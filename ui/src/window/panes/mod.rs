@@ -11,6 +11,7 @@ mod floats;
 mod history;
 pub mod later;
 mod log;
+mod of_design;
 mod posterise;
 mod region_details;
 mod regions;

@@ -8,7 +8,7 @@ use pickglass::edit::{Document, Edit};
 use pickglass::engine::{self, StillRequest};
 use pickglass::presets;
 
-use super::{Pane, Panes};
+use super::{Pane, Panes, accuracy};
 use crate::help;
 use crate::window::action::{Action, Mark};
 use crate::window::{crossing, laid};
@@ -120,6 +120,17 @@ fn every_dial_has_its_place_in_help_reports_and_window() {
     assert!(Axis::named("glow").is_err() && !help.contains("* glow: "));
 }
 
+fn axis_of(name: &str) -> Axis {
+    Axis::named(name).expect("a name")
+}
+
+fn asked_for(request: &StillRequest) -> Asked {
+    Asked {
+        request: request.clone(),
+        renderer: engine::reference(),
+    }
+}
+
 #[test]
 fn accuracy_is_measured_and_a_setting_is_taken() {
     let mut harness = bench("default", Pane::Accuracy);
@@ -159,7 +170,8 @@ fn accuracy_is_measured_and_a_setting_is_taken() {
     let curve = (measured.dials.iter())
         .find(|curve| !set_elsewhere.contains(&curve.name.as_str()))
         .expect("a dial");
-    let listed = format!("{}: {}", curve.name, curve.current);
+    let title = |name: &str| accuracy::title(&axis_of(name));
+    let listed = format!("{}: {}", title(&curve.name), curve.current);
     harness.get_by_label(&listed).click();
     harness.run_steps(2);
     let other = (curve.settings.iter()).find(|point| point.value != curve.current);
@@ -177,6 +189,40 @@ fn accuracy_is_measured_and_a_setting_is_taken() {
     let asked = &harness.state().asked;
     let set = |action: &Action| matches!(action, Action::Set(name, value) if *name == curve.name && value == other);
     assert!(asked.iter().any(set), "{asked:?}");
+    // What was taken is of the same curves; a budget chooses among all of them.
+    (axis_of(&curve.name).set(&asked_for(&request), other)).map_or_else(
+        |error| panic!("{error}"),
+        |set| harness.state_mut().panes.look(Some(&set.request)),
+    );
+    harness.run_steps(2);
+    let stale = |harness: &Harness<'_, Bench>| {
+        (harness.query_all_by_label_contains("This was measured"))
+            .next()
+            .is_some()
+    };
+    assert!(!stale(&harness));
+    harness.get_by_label("Budget").type_text("wrong");
+    harness.run_steps(2);
+    assert!(
+        harness
+            .query_by_label_contains("expected seconds")
+            .is_some()
+    );
+    harness.state_mut().panes.accuracy.budget("0.5 s");
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("% wrong").is_some());
+    harness.state_mut().panes.accuracy.budget("0.000001%");
+    harness.run_steps(2);
+    let none = "No measured settings are so good.";
+    assert!(harness.query_by_label(none).is_some());
+    // A change of the design is told, and told no more once it is undone.
+    let rename = Edit::Rename("another".to_owned());
+    harness.state_mut().document.apply(rename).expect("an edit");
+    harness.run_steps(2);
+    assert!(stale(&harness));
+    harness.state_mut().document.undo();
+    harness.run_steps(2);
+    assert!(!stale(&harness));
     // Another view is another picture.
     let another = |harness: &Harness<'_, Bench>| {
         (harness.query_all_by_label_contains("another view"))

@@ -11,6 +11,7 @@ use pickglass::needs::{self, Need, Needs, Pair};
 use pickglass::plan::{Decider, Effect};
 
 use super::words;
+use crate::window::panes::of_design::OfDesign;
 use crate::window::task::Running;
 
 /// A look that is under way; `None` = it was stopped.
@@ -18,8 +19,8 @@ pub type Look = Running<Result<Option<Looked>, String>>;
 
 /// What a look found.
 pub struct Looked {
-    /// The document's state that it is of.
-    revision: u64,
+    /// The design that it is of.
+    of: OfDesign,
     /// The picture that was looked at, and with what allowance.
     request: StillRequest,
     pub tolerance: f64,
@@ -49,18 +50,18 @@ pub fn start(
     request: StillRequest,
     tolerance: f64,
 ) -> std::io::Result<Look> {
-    let (design, revision) = (Arc::clone(document.design()), document.revision());
+    let (design, of) = (Arc::clone(document.design()), OfDesign::new(document));
     Running::start(ctx, "effects", move |job, teller| {
         let teller = teller.clone();
         let tell = move |stage: &str, share: f32| teller.tell(words::stage(stage, share));
         let job = job.clone().with_listener(tell);
-        look(&design, revision, request, tolerance, &job)
+        look(&design, of, request, tolerance, &job)
     })
 }
 
 fn look(
     design: &Arc<Design>,
-    revision: u64,
+    of: OfDesign,
     request: StillRequest,
     tolerance: f64,
     job: &Job,
@@ -75,7 +76,7 @@ fn look(
     let followed = settled.settings.render.max_order;
     Ok(Some(Looked {
         order: (followed < request.settings.render.max_order).then_some(followed),
-        revision,
+        of,
         request,
         tolerance,
         needs,
@@ -107,12 +108,17 @@ impl Looked {
         costs.max_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// Whether that is not what is shown, as `asked`, of the document's state `revision`.
-    pub fn stale(&self, asked: &StillRequest, revision: u64, tolerance: f64) -> Option<Stale> {
+    /// Whether that is not what is shown, as `asked`, of a document.
+    pub fn stale(
+        &self,
+        asked: &StillRequest,
+        document: &Document,
+        tolerance: f64,
+    ) -> Option<Stale> {
         let mut switched = asked.clone();
         switched.effects.clone_from(&self.request.effects);
         switched.settings.render.max_order = self.request.settings.render.max_order;
-        if revision != self.revision {
+        if !self.of.is(document) {
             Some(Stale::Design)
         } else if switched != self.request {
             Some(Stale::View)

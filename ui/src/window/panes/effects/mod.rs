@@ -20,6 +20,8 @@ use crate::window::task::Outcome;
 use looking::{Look, Looked, Stale};
 use pair::PairView;
 
+pub use words::title;
+
 /// What may be left out, as a share of the light of 95 of 100 places.
 const TOLERANCES: [f64; 5] = [0.0, 0.005, 0.01, 0.02, 0.05];
 /// Room from which the pictures stand beside the rows, points.
@@ -192,7 +194,7 @@ impl EffectsPane {
     /// What is not of the picture that is shown, of what was found.
     fn stale(&self, document: &Document) -> Option<Stale> {
         let (looked, asked) = (self.looked.as_ref()?, self.asked.as_ref()?);
-        looked.stale(asked, document.revision(), self.tolerance)
+        looked.stale(asked, document, self.tolerance)
     }
 
     /// What leaves out all that does not show; nothing where there is none, or nobody knows.

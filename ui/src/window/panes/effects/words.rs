@@ -58,18 +58,23 @@ pub fn found(need: &Need) -> String {
         return format!("{}: leaving it out changes nothing.", sentence(&need.why));
     }
     let cost = match need.cost {
-        Some(cost) if cost > HARDLY => format!("{} of the work. ", share(cost)),
+        Some(cost) if cost > HARDLY => format!("{}{} of the work. ", share(cost), between(need)),
         Some(_) => "Next to none of the work. ".to_owned(),
         None => String::new(),
     };
-    match (need.by, need.bound, need.change) {
+    match (need.by, need.bound, need.changes()) {
         (Decider::Scene, Some(_), _) => format!("{cost}{}.", sentence(&need.why)),
-        (_, Some(bound), Some(change)) => format!(
-            "{cost}Without it a place changes by {} on average, 95 of 100 by {} at most.",
-            at_most(change),
-            at_most(bound)
-        ),
+        (_, _, Some(changes)) => format!("{cost}Without it {changes}."),
         _ => cost.trim_end().to_owned(),
+    }
+}
+
+/// How far the looks differed in what an effect costs, where that is told.
+fn between(need: &Need) -> String {
+    let [low, high] = need.cost_interval.unwrap_or_default();
+    match high - low > HARDLY {
+        true => format!(" ({:.0} to {:.0})", 100.0 * low.max(0.0), 100.0 * high),
+        false => String::new(),
     }
 }
 

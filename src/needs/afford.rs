@@ -1,7 +1,6 @@
 //! A picture for so many seconds, or with so little error: what is left out for it, and what it
 //! will come to.
 
-use std::str::FromStr;
 use std::time::Instant;
 
 use super::block_change::{common, relative};
@@ -9,40 +8,8 @@ use super::settling::{Eye, some_of};
 use crate::engine::{self, Engine, Renderer, StillError, StillRequest, Stop};
 use crate::film;
 use crate::job::Job;
-use crate::plan::{Effect, Subject};
+use crate::plan::{Budget, Effect, Subject};
 use crate::render::{BLOCK, BlocksSeen};
-
-/// What a picture may take, or how wrong it may be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Budget {
-    /// Seconds of the whole work, as [`Stop::seconds`].
-    Seconds(f64),
-    /// Relative error, noise and what is left out together.
-    Error(f64),
-}
-
-impl FromStr for Budget {
-    type Err = String;
-
-    /// `2s`, `2.5 s`, `500ms`, `3min` or `1%`.
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let wrong = || "expected seconds or an error, as 2s or 1%".to_owned();
-        let text = text.trim();
-        let units = [("%", 0.01), ("ms", 1e-3), ("min", 60.0), ("s", 1.0)];
-        let (unit, scale, number) = units
-            .into_iter()
-            .find_map(|(unit, scale)| Some((unit, scale, text.strip_suffix(unit)?)))
-            .ok_or_else(wrong)?;
-        let number: f64 = number.trim().parse().map_err(|_| wrong())?;
-        let value = number * scale;
-        match unit {
-            "%" if value > 0.0 && value <= 1.0 => Ok(Self::Error(value)),
-            "%" => Err("expected an error above 0 and at most 100 %".to_owned()),
-            _ if value > 0.0 && value.is_finite() => Ok(Self::Seconds(value)),
-            _ => Err("expected seconds above 0".to_owned()),
-        }
-    }
-}
 
 /// What a picture will come to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +39,8 @@ const FEWEST: f64 = 48.0;
 const MOST_PATHS: f64 = 65_536.0;
 
 /// Settles a picture by a budget: how often light is scattered, and when it ends. Its work began
-/// at `begun`. `None` where the engine follows no paths.
+/// at `begun`. `None` where the engine follows no paths, and of a colour difference: a look says
+/// nothing of that.
 ///
 /// # Errors
 /// When the request is not usable or the job is cancelled.
@@ -94,7 +62,7 @@ pub fn afford(
         return Ok(None);
     };
     let pixels = f64::from(request.width) * f64::from(request.height);
-    let per_path = |seen: &BlocksSeen| seen.seconds / seen.counters.paths.max(1) as f64;
+    let per_path = |seen: &BlocksSeen| seen.took.seconds / seen.counters.paths.max(1) as f64;
     // A longer look where there is time for it.
     let time = match budget {
         Budget::Seconds(seconds) => seconds,
@@ -102,6 +70,7 @@ pub fn afford(
             let one = noise_of_one(&seen);
             pixels * per_path(&seen) * (one / error).powi(2)
         }
+        Budget::DeltaE(_) => return Ok(None),
     };
     // Noise is known from many paths of few blocks, what is left out from many blocks.
     let paths = LOOKING * time / per_path(&seen) / f64::from(BLOCK * BLOCK);
@@ -131,7 +100,7 @@ pub fn afford(
     let promises = (orders.chain([asked])).filter_map(|order| model.promise(order, budget, fixed));
     let better = |one: &Promise, other: &Promise| match budget {
         Budget::Seconds(_) => one.error.total_cmp(&other.error),
-        Budget::Error(_) => one.seconds.total_cmp(&other.seconds),
+        Budget::Error(_) | Budget::DeltaE(_) => one.seconds.total_cmp(&other.seconds),
     };
     // The last one, all orders, can always be promised.
     let Some(promise) = promises.min_by(better) else {
@@ -141,20 +110,7 @@ pub fn afford(
     if promise.order < asked {
         settled.settings.render.max_order = promise.order;
     }
-    settled.stop = match budget {
-        Budget::Seconds(seconds) => Stop {
-            seconds: Some(seconds),
-            ..Stop::default()
-        },
-        Budget::Error(error) => Stop {
-            error: Some(
-                (error * error - promise.bias * promise.bias)
-                    .max(1e-12)
-                    .sqrt(),
-            ),
-            ..Stop::default()
-        },
-    };
+    settled.stop = Stop::within(budget, promise.bias);
     Ok(Some((settled, promise)))
 }
 
@@ -199,6 +155,7 @@ impl Model<'_> {
                 }
                 self.noise * self.noise / noise
             }
+            Budget::DeltaE(_) => return None,
         };
         let spp = spp.clamp(1.0, MOST_PATHS);
         Some(Promise {
@@ -208,24 +165,5 @@ impl Model<'_> {
             spp: spp.round() as u32,
             order,
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_budget_is_time_or_error() {
-        assert_eq!("2s".parse(), Ok(Budget::Seconds(2.0)));
-        assert_eq!(" 2.5 s".parse(), Ok(Budget::Seconds(2.5)));
-        assert_eq!("500ms".parse(), Ok(Budget::Seconds(0.5)));
-        assert_eq!("3min".parse(), Ok(Budget::Seconds(180.0)));
-        assert_eq!("1%".parse(), Ok(Budget::Error(0.01)));
-        for wrong in [
-            "", "2", "s", "%", "0s", "-1s", "nans", "infs", "0%", "101%", "2h",
-        ] {
-            assert!(wrong.parse::<Budget>().is_err(), "{wrong}");
-        }
     }
 }

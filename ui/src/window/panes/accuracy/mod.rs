@@ -1,13 +1,14 @@
 //! What accuracy costs: time and error of every setting of every dial, measured on this machine
 //! and of the open design. A click on a setting takes it.
 
+mod budget;
+mod plot;
+mod words;
+
 use std::sync::{Arc, Mutex, PoisonError};
 
 use egui::{Button, Label, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, vec2};
-use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
-use pickglass::accuracy::{
-    self, Accuracy, AccuracyError, Asked, Axis, Curve, Effort, Measuring, Point, number,
-};
+use pickglass::accuracy::{self, Accuracy, AccuracyError, Asked, Axis, Curve, Effort, Measuring};
 use pickglass::design::Design;
 use pickglass::edit::Document;
 use pickglass::engine::{self, StillRequest};
@@ -17,11 +18,15 @@ use pickglass::job::Job;
 use strum::EnumMessage;
 
 use super::columns::column;
+use super::of_design::OfDesign;
 use super::{PaneView, Shown};
 use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 use crate::window::picture::image;
 use crate::window::task::{Outcome, Running};
+use budget::BudgetForm;
+#[cfg(test)]
+pub use words::title;
 
 /// Width of the list of dials and of that of settings, points.
 const LIST: f32 = 44.0 * tokens::GRID;
@@ -31,12 +36,8 @@ const BESIDE: f32 = 170.0 * tokens::GRID;
 /// Height of a plot above them, and of the picture of a setting, points.
 const PLOT: f32 = 52.0 * tokens::GRID;
 const PICTURE: f32 = 30.0 * tokens::GRID;
-/// Least height of a plot, points.
-const LEAST_PLOT: f32 = 30.0 * tokens::GRID;
-/// How near to a setting the pointer has to be, points.
-const NEAR: f32 = 20.0;
-/// Errors of nothing are drawn at this share of the least that there is.
-const BELOW: f64 = 0.3;
+/// Said where dials are set.
+const NOT_UNDONE: &str = "A setting is no part of the design: undo leaves it.";
 
 /// What was measured so far, and what the settings of each dial look like.
 #[derive(Default)]
@@ -56,9 +57,10 @@ pub struct AccuracyPane {
     failed: Option<String>,
     /// The dial whose curve is shown.
     dial: Option<String>,
-    /// Another number for each measurement, and the document's state that it is of.
+    budget: BudgetForm,
+    /// Another number for each measurement, and the design that it is of.
     measurement: u64,
-    revision: u64,
+    of: Option<OfDesign>,
     /// A setting's picture, by measurement, dial and place.
     texture: Option<((u64, String, usize), TextureHandle)>,
 }
@@ -75,13 +77,16 @@ impl PaneView for AccuracyPane {
             ui.label(RichText::new(told).color(quiet));
             return;
         };
-        let changed = shown.document.revision() != self.revision;
+        let changed = self.of.as_ref().is_some_and(|of| !of.is(shown.document));
         if changed || self.is_of_another_picture(&accuracy) {
             let told = match changed {
                 true => "This was measured before the design was changed.",
-                false => "This was measured of another view, or with other settings.",
+                false => "This was measured of another view, or with dials that no curve is of.",
             };
             ui.label(RichText::new(told).color(Palette::current(ui).warning));
+        }
+        if let (None, Some(asked)) = (&self.running, self.asked()) {
+            self.budget.show(ui, &accuracy, &asked, actions);
         }
         let known = |name: &String| accuracy.dials.iter().any(|curve| curve.name == *name);
         let dial = self.dial.clone().filter(known);
@@ -140,6 +145,12 @@ impl AccuracyPane {
         self.found().accuracy.clone()
     }
 
+    /// Writes a budget.
+    #[cfg(test)]
+    pub fn budget(&mut self, text: &str) {
+        self.budget.write(text);
+    }
+
     fn found(&self) -> std::sync::MutexGuard<'_, Found> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -174,7 +185,7 @@ impl AccuracyPane {
             if button.clicked()
                 && let Some(asked) = self.asked.clone()
             {
-                self.revision = document.revision();
+                self.of = Some(OfDesign::new(document));
                 self.start(ui.ctx(), document.design(), asked);
             }
             for effort in [Effort::Quick, Effort::Default, Effort::Full] {
@@ -224,13 +235,16 @@ impl AccuracyPane {
         }
     }
 
+    /// The picture that is looked at, and what draws it.
+    fn asked(&self) -> Option<Asked> {
+        let request = self.asked.clone()?;
+        let renderer = engine::reference();
+        Some(Asked { request, renderer })
+    }
+
     /// Whether what was measured is of another picture than the one that is looked at.
     fn is_of_another_picture(&self, accuracy: &Accuracy) -> bool {
-        let renderer = engine::reference();
-        self.asked.as_ref().is_some_and(|request| {
-            let request = request.clone();
-            accuracy::options(&Asked { request, renderer }) != accuracy.picture
-        })
+        self.asked().is_some_and(|asked| !accuracy.is_of(&asked))
     }
 
     /// The dials, each with what it is set to.
@@ -243,9 +257,11 @@ impl AccuracyPane {
 
     fn dials_ui(&mut self, ui: &mut Ui, accuracy: &Accuracy, shown: &str) {
         for curve in &accuracy.dials {
-            let text = format!("{}: {}", curve.name, self.set_to(curve));
+            let text = format!("{}: {}", words::title_of(curve), self.set_to(curve));
             let entry = ui.selectable_label(curve.name == shown, text);
-            if entry.on_hover_text(&curve.about).clicked() {
+            let about = curve.about.trim_end_matches('.');
+            let about = format!("{about}. On the command line: {}", curve.name);
+            if entry.on_hover_text(about).clicked() {
                 self.dial = Some(curve.name.clone());
             }
         }
@@ -254,10 +270,8 @@ impl AccuracyPane {
     /// What a dial is set to now.
     fn set_to(&self, curve: &Curve) -> String {
         let axis = Axis::named(&curve.name).ok();
-        let now = axis.zip(self.asked.clone()).map(|(axis, request)| {
-            let renderer = engine::reference();
-            axis.current(&Asked { request, renderer })
-        });
+        let now = axis.zip(self.asked());
+        let now = now.map(|(axis, asked)| axis.current(&asked));
         now.unwrap_or_else(|| curve.current.clone())
     }
 
@@ -267,7 +281,7 @@ impl AccuracyPane {
         let what = curve.about.trim_end_matches('.');
         let about = format!("{what}. Error: {}.", curve.measure.about());
         ui.add(Label::new(RichText::new(about).color(quiet)).truncate());
-        plot_ui(ui, curve, &self.set_to(curve))
+        plot::show(ui, curve, &self.set_to(curve))
     }
 
     /// The settings of a dial one by one, and what one of them looks like; `pointed` is at one
@@ -293,7 +307,7 @@ impl AccuracyPane {
                     let chosen = point.value == now;
                     let row = ui.add_enabled(
                         can_set,
-                        Button::selectable(chosen, row(curve, point)).truncate(),
+                        Button::selectable(chosen, words::row(curve, point)).truncate(),
                     );
                     let pointed_at = row.hovered() || row.has_focus();
                     if pointed_at || row.contains_pointer() {
@@ -307,6 +321,9 @@ impl AccuracyPane {
                 let at = looked_at.or_else(|| curve.settings.iter().position(|p| p.value == now));
                 if let Some(at) = at {
                     self.picture_ui(ui, curve, at);
+                }
+                if can_set {
+                    ui.label(RichText::new(NOT_UNDONE).color(Palette::current(ui).quiet));
                 }
             });
         if let (true, Some(at)) = (can_set, taken) {
@@ -340,122 +357,4 @@ impl AccuracyPane {
             ));
         }
     }
-}
-
-/// A setting in words.
-fn row(curve: &Curve, point: &Point) -> String {
-    let error = match curve.unit.as_str() {
-        "yarn diameters" => format!("{} {}", number(point.error), curve.unit),
-        _ => format!("{} %", number(100.0 * point.error)),
-    };
-    let seen = point.delta_e.map_or_else(String::new, |delta_e| {
-        format!(" · ΔE {delta_e:.1} from 30 cm")
-    });
-    let knee = match curve.knee.as_ref() == Some(&point.value) {
-        true => " · after it more time brings little",
-        false => "",
-    };
-    let predicted = if point.measured { "" } else { " · predicted" };
-    format!(
-        "{} · {} s · {error}{seen}{knee}{predicted}",
-        point.value,
-        number(point.seconds)
-    )
-}
-
-/// Decimal logarithms of time and error of each setting.
-fn places(curve: &Curve) -> Vec<[f64; 2]> {
-    let errors = curve.settings.iter().map(|point| point.error);
-    let least = (errors.filter(|error| *error > 0.0)).fold(f64::INFINITY, f64::min);
-    let floor = if least.is_finite() {
-        BELOW * least
-    } else {
-        1e-3
-    };
-    let place = |point: &Point| {
-        let error = point.error.max(floor);
-        [point.seconds.max(1e-9).log10(), error.log10()]
-    };
-    curve.settings.iter().map(place).collect()
-}
-
-/// Draws the curve; says which setting the pointer is at, and whether it was clicked.
-fn plot_ui(ui: &mut Ui, curve: &Curve, now: &str) -> Option<(usize, bool)> {
-    let places = places(curve);
-    let palette = Palette::current(ui);
-    let of_power = |mark: GridMark| number(10f64.powf(mark.value));
-    let plot = Plot::new(("accuracy", &curve.name))
-        .height(ui.available_height().max(LEAST_PLOT))
-        .grid_color(palette.line)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .x_axis_label("seconds")
-        .y_axis_label(curve.unit.as_str())
-        .x_axis_formatter(move |mark, _| of_power(mark))
-        .y_axis_formatter(move |mark, _| of_power(mark))
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
-        .set_margin_fraction(vec2(0.12, 0.15))
-        .label_formatter(|_| None);
-    let shown = plot.show(ui, |plot| {
-        let series = |keep: &dyn Fn(usize) -> bool| -> PlotPoints<'_> {
-            let kept = places.iter().enumerate().filter(|(at, _)| keep(*at));
-            kept.map(|(_, place)| *place).collect()
-        };
-        let measured = |at: usize| curve.settings[at].measured;
-        plot.line(Line::new("", series(&|_| true)).color(palette.focus));
-        for filled in [true, false] {
-            let points = Points::new("", series(&|at| measured(at) == filled));
-            plot.points(points.filled(filled).radius(4.0).color(palette.focus));
-        }
-        let here = series(&|at| curve.settings[at].value == now);
-        plot.points(
-            Points::new("", here)
-                .shape(MarkerShape::Circle)
-                .filled(false)
-                .radius(8.0)
-                .color(palette.warning),
-        );
-        for (at, [x, y]) in places.iter().enumerate() {
-            let said = RichText::new(&curve.settings[at].value).color(palette.text);
-            let text = egui_plot::Text::new("", PlotPoint::new(*x, *y), said);
-            plot.text(text.anchor(egui::Align2::LEFT_BOTTOM));
-        }
-    });
-    let pointer = shown.response.hover_pos()?;
-    let distance = |place: &[f64; 2]| {
-        let at = PlotPoint::new(place[0], place[1]);
-        shown.transform.position_from_point(&at).distance(pointer)
-    };
-    let nearest = (places.iter().map(distance).enumerate())
-        .min_by(|one, other| one.1.total_cmp(&other.1))
-        .filter(|(_, distance)| *distance < NEAR);
-    nearest.map(|(at, _)| (at, shown.response.clicked()))
-}
-
-/// What is marked in a decade, and how far it is to the next mark of its kind.
-const DECADE: [(f64, f64); 6] = [
-    (1.0, 1.0),
-    (2.0, 0.3),
-    (5.0, 0.3),
-    (1.5, 0.1),
-    (3.0, 0.1),
-    (7.0, 0.1),
-];
-
-/// Powers of ten, and what stands between them.
-fn decades(input: GridInput) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
-    let (first, last) = (low.floor() as i32, high.ceil().min(low + 40.0) as i32);
-    let marks = (first..=last).flat_map(|power| {
-        DECADE.map(|(times, step_size)| GridMark {
-            value: f64::from(power) + times.log10(),
-            step_size,
-        })
-    });
-    marks
-        .filter(|mark| mark.value >= low && mark.value <= high)
-        .collect()
 }

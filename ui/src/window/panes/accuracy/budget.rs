@@ -1,0 +1,106 @@
+//! A budget: dials by the measured curves.
+
+use egui::{Button, RichText, TextEdit, Ui};
+use pickglass::accuracy::{Accuracy, Asked, Axis, Choice, number};
+use pickglass::plan::Budget;
+
+use super::words;
+use crate::tokens::{self, Palette};
+use crate::window::action::Action;
+
+/// Width of what is written, points.
+const WIDTH: f32 = 20.0 * tokens::GRID;
+
+/// What was written.
+#[derive(Default)]
+pub struct BudgetForm {
+    text: String,
+}
+
+impl BudgetForm {
+    /// Writes into it.
+    #[cfg(test)]
+    pub fn write(&mut self, text: &str) {
+        text.clone_into(&mut self.text);
+    }
+
+    /// Shows it, with what the curves say of it; `asked` is the picture that is looked at.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        accuracy: &Accuracy,
+        asked: &Asked,
+        actions: &mut Vec<Action>,
+    ) {
+        let palette = Palette::current(ui);
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label("Budget");
+            let edit = TextEdit::singleline(&mut self.text)
+                .hint_text("2 s, 1 % or ΔE 1")
+                .desired_width(WIDTH);
+            let tip = "So many seconds, or so little error: the curves choose the dials";
+            let edit = ui.add(edit).labelled_by(label.id).on_hover_text(tip);
+            if self.text.trim().is_empty() {
+                return;
+            }
+            let choice = match self.text.parse::<Budget>() {
+                Ok(budget) => accuracy.within(budget),
+                Err(wrong) => {
+                    ui.label(RichText::new(wrong).color(palette.warning));
+                    return;
+                }
+            };
+            let Some(choice) = choice else {
+                let told = "No measured settings are so good.";
+                ui.label(RichText::new(told).color(palette.warning));
+                return;
+            };
+            let changes = changes(&choice, asked);
+            let set = ui.add_enabled(!changes.is_empty(), Button::new("Set the dials"));
+            let entered =
+                edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let told = said(&choice, &changes);
+            if set.clicked() || entered {
+                let set = changes
+                    .into_iter()
+                    .map(|(axis, value)| Action::Set(axis.name().to_owned(), value));
+                actions.extend(set);
+            }
+            ui.label(told);
+        });
+    }
+}
+
+/// What the window sets for a choice, of what is set otherwise now.
+fn changes(choice: &Choice, asked: &Asked) -> Vec<(Axis, String)> {
+    let settings = choice.settings.iter();
+    settings
+        .filter_map(|(name, value)| {
+            let axis = Axis::named(name).ok()?;
+            let open = axis.elsewhere().is_none() && axis.current(asked) != *value;
+            open.then(|| (axis, value.clone()))
+        })
+        .collect()
+}
+
+/// What a choice comes to, and what is set for it.
+fn said(choice: &Choice, changes: &[(Axis, String)]) -> String {
+    let seen = choice
+        .delta_e
+        .map_or_else(String::new, |delta_e| format!(", ΔE {delta_e:.1}"));
+    let paths = choice
+        .paths()
+        .map_or_else(String::new, |paths| format!(" · {paths} paths a pixel"));
+    let set = match changes {
+        [] => "the dials are so already".to_owned(),
+        changes => (changes.iter())
+            .map(|(axis, value)| format!("{}: {value}", words::title(axis)))
+            .collect::<Vec<_>>()
+            .join(", "),
+    };
+    format!(
+        "{} s, {} % wrong{seen}{paths} · {set}",
+        number(choice.seconds),
+        number(100.0 * choice.error)
+    )
+}
