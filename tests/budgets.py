@@ -39,7 +39,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("designs", nargs="*", default=PRESETS)
     parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--size", default="320x240")
+    parser.add_argument("--size", default="96x72")
     parser.add_argument("--mm", default="10")
     args = parser.parse_args()
     cores = os.cpu_count() or 1

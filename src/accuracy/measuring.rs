@@ -40,12 +40,12 @@ use crate::synthesis::MOST_AT_ONCE;
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Effort {
-    /// The four dials that matter most, roughly: half a minute.
+    /// The four dials that matter most, roughly: half a minute where nothing else works.
     Quick,
-    /// The eight dials that matter most to this design: at most five minutes.
+    /// The eight dials that matter most to this design: at most five minutes, likewise.
     #[default]
     Default,
-    /// Every dial, closely: half an hour.
+    /// Every dial, closely: half an hour, likewise.
     Full,
 }
 

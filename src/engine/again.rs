@@ -2,7 +2,7 @@
 //! for, in the program's own grammar.
 
 use super::request::{LightChoice, StillReport, StillRequest};
-use crate::plan::{DIALS, EffectBase, EffectChoice, Settings};
+use crate::plan::{DIALS, Effect, EffectBase, EffectChoice, Settings};
 use crate::text::shell_word;
 
 /// What a picture's file says of how it is made again.
@@ -67,8 +67,10 @@ pub fn options(request: &StillRequest, renderer: &str, spp: Option<u32>) -> Stri
     let usual = Settings::default();
     for dial in DIALS {
         let value = dial.get(&request.settings);
+        // There is nothing to turn of what is left out.
+        let is_idle = left_out(&request.effects).any(|effect| dial.effect == Some(effect));
         // Paths a pixel are said above.
-        if dial.name != "spp" && value != dial.get(&usual) {
+        if dial.name != "spp" && value != dial.get(&usual) && !is_idle {
             say("set", format!("{}={value}", dial.name));
         }
     }
@@ -92,19 +94,23 @@ fn effects(choice: &EffectChoice) -> String {
         format!(",{sign}{effect}")
     });
     // What the scene does not call for is said by name: it need not be found out again.
-    let is_named = |effect| choice.changes.iter().any(|(named, _)| *named == effect);
-    let is_auto = choice.base == EffectBase::Auto;
-    let found = (choice.found.iter())
-        .filter(|found| is_auto && !found.on && !is_named(found.effect))
-        .map(|found| format!(",-{}", found.effect));
+    let found = left_out(choice).map(|effect| format!(",-{effect}"));
     (changes.chain(found)).fold(choice.base.to_string(), |words, word| words + &word)
+}
+
+/// Effects that the scene does not call for, where nobody said otherwise.
+fn left_out(choice: &EffectChoice) -> impl Iterator<Item = Effect> {
+    let is_auto = choice.base == EffectBase::Auto;
+    let off = (choice.found.iter()).filter(move |found| is_auto && !found.on);
+    let off = off.map(|found| found.effect);
+    off.filter(|effect| choice.named(*effect).is_none())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::engine::Heading;
-    use crate::plan::Effect;
+    use crate::plan::Found;
     use crate::render::Backing;
 
     #[test]
@@ -137,5 +143,25 @@ mod tests {
              --effects none,+sky,-edge-fixing --colourway 'it'\\''s' --seed 0 --set level=2 \
              --turned"
         );
+    }
+
+    #[test]
+    fn what_the_scene_leaves_out_has_no_dial_to_set() {
+        let mut request = StillRequest::default();
+        request.settings.render.max_order = 8;
+        assert!(options(&request, "cpu", None).contains("--set order=8"));
+        request.effects.found.push(Found {
+            effect: Effect::Multiple,
+            on: false,
+            why: String::new(),
+        });
+        let said = options(&request, "cpu", None);
+        assert!(
+            said.contains("--effects auto,-multiple") && !said.contains("--set order"),
+            "{said}"
+        );
+        // Named, it is simulated, and its dial says something.
+        request.effects.switch(Effect::Multiple, Some(true));
+        assert!(options(&request, "cpu", None).contains("--set order=8"));
     }
 }

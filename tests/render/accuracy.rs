@@ -94,16 +94,16 @@ fn what_theory_says(accuracy: &Accuracy) -> Result<(), String> {
             "times and errors are no numbers",
         )?;
     }
-    // Each further scattering brings light that was missing before, and takes time.
+    // Each further scattering brings light that was missing before.
     let order = all("order");
     for pair in order.windows(2) {
         says(no_larger(&pair[1], &pair[0]), &format!("order: {pair:?}"))?;
     }
-    if let [first, .., last] = order {
+    if let [first, ..] = order {
         says(first.error > 0.1, "single scattering alone is dark")?;
-        says(first.seconds < last.seconds, "single scattering is quick")?;
     }
-    // Paths are independent: noise falls with the root of their number, and time is theirs.
+    // Paths are independent: noise falls with the root of their number. What is predicted takes
+    // as much longer as there are more of them, but for what no path takes.
     let paths = |point: &Point| point.value.parse::<f64>().unwrap_or(f64::NAN);
     for pair in all("spp").windows(2) {
         let times = paths(&pair[1]) / paths(&pair[0]);
@@ -113,10 +113,8 @@ fn what_theory_says(accuracy: &Accuracy) -> Result<(), String> {
             &format!("spp: {ratio} {pair:?}"),
         )?;
         let longer = pair[1].seconds / pair[0].seconds / times;
-        says(
-            (0.4..2.5).contains(&longer),
-            &format!("spp: {longer} {pair:?}"),
-        )?;
+        let is_so = pair[0].measured || (0.5..1.01).contains(&longer);
+        says(is_so, &format!("spp: {longer} {pair:?}"))?;
     }
     // The method that finds the optimum is no worse than the others, a closer rank or patch
     // than a coarser one.

@@ -107,10 +107,28 @@ class Tour:
         finally:
             desk.xdo("keyup", "q")
 
+    def accuracy(self):
+        desk = self.desk
+        desk.start(self.program, "denim")
+        desk.sees("Drawdown of ")
+        self.refined()
+        desk.key("alt+9")
+        node = desk.still("Measure", "button")
+        desk.click_at(*middle(node))
+        desk.sees("Stop measuring")
+        desk.gone("Stop measuring", seconds=600)
+        desk.fill("Budget", "field", "5 s", enter=False)
+        order = desk.find("Scatterings followed", part=True)
+        if order:
+            desk.click_at(*middle(order))
+        self.rest()
+        time.sleep(2)
+        self.keep("accuracy")
+
 
 def main(arguments):
     program, folder = (pathlib.Path(given).resolve() for given in arguments[:2])
-    wanted = arguments[2:] or ["draft", "posterise", "glass"]
+    wanted = arguments[2:] or ["draft", "posterise", "glass", "accuracy"]
     missing = lacking()
     if missing:
         say("missing: " + ", ".join(missing))

@@ -91,6 +91,10 @@ const WINDOW: &[(&str, &str)] = &[
         "window-glass",
         "The pick glass on a glen check, with the cut along the pick under it",
     ),
+    (
+        "window-accuracy",
+        "What accuracy costs of a denim, and the dials for a budget of five seconds",
+    ),
 ];
 
 fn gallery() -> String {

@@ -65,7 +65,7 @@ not written over.
 
 With --json: dials[]{name, unit, reference, current, knee, settings[]{value, seconds,
 seconds_interval, processor_seconds, error, error_interval, delta_e, ssim, measured}}, design,
-picture, machine{system, threads} …";
+picture, spp, machine{system, threads} …";
 
 /// What becomes of a case that does not hold, and what `selftest --json` says.
 pub const SELFTEST: &str = "\
@@ -119,7 +119,8 @@ Dials for --set, each with the values that it takes from crude to reference:
 With --json: renderer, width, height, spp, seconds{{…, total}}, paths_per_second, error,
 invalid_samples, majorant_violations, capped_walks, invalid_rays, effects[], level, light_error
 (of a coarse level; null: not measured), interrupted; with --tolerance, needs{{…}} as of effects;
-with --budget, promise{{seconds, error, bias, spp, order}}; with --colourway all, one sheet of every
+with --budget, promise{{seconds, error, bias, spp, order}}, or with --curves promise{{seconds, error,
+bias, delta_e, spp, settings}}; with --colourway all, one sheet of every
 colourway: colourways[]{{name, x, y, width, height, recoloured}}.",
         effects.join("\n"),
         dials.join("\n")

@@ -201,7 +201,7 @@ fn accuracy_is_measured_and_a_setting_is_taken() {
             .is_some()
     };
     assert!(!stale(&harness));
-    harness.get_by_label("Budget").type_text("wrong");
+    harness.state_mut().panes.accuracy.budget("wrong");
     harness.run_steps(2);
     assert!(
         harness

@@ -33,6 +33,9 @@ const AMONG: f32 = 40.0 * tokens::GRID;
 /// Least width of words beside a switch, points.
 const WORDS: f32 = 60.0 * tokens::GRID;
 
+/// Said below the switches.
+const NOT_UNDONE: &str = "A switch is no part of the design: undo leaves it.";
+
 /// The rows, and what was found.
 pub struct EffectsPane {
     /// The picture of the cloth, as it is looked at, once it is.
@@ -273,6 +276,8 @@ impl EffectsPane {
                     self.pair_ui(ui, vec2(ui.available_width(), AMONG));
                 }
             }
+            let quiet = Palette::current(ui).quiet;
+            ui.label(RichText::new(NOT_UNDONE).color(quiet));
         });
     }
 
