@@ -39,6 +39,17 @@ impl Clock {
     }
 }
 
+impl Took {
+    /// What is left of it beside a part.
+    pub fn without(self, part: Self) -> Self {
+        let both = self.processor_seconds.zip(part.processor_seconds);
+        Self {
+            seconds: (self.seconds - part.seconds).max(0.0),
+            processor_seconds: both.map(|(all, part)| (all - part).max(0.0)),
+        }
+    }
+}
+
 /// Seconds that this process has worked.
 #[cfg(unix)]
 fn processor() -> Option<f64> {

@@ -801,7 +801,8 @@ impl<'d> Bench<'d> {
         };
         let whole = |take: &Take| {
             let parts = [
-                scale(take.took, more * self.scale),
+                scale(take.took.without(take.before), more * self.scale),
+                take.before,
                 scale(take.developing, self.scale),
                 scale(take.encoding, self.scale),
             ];

@@ -40,6 +40,8 @@ pub struct Take {
     pub alpha: Vec<f32>,
     /// What the picture took.
     pub took: Took,
+    /// The part of it before anything is traced, however many pixels and paths there are.
+    pub before: Took,
     /// What bringing it to what is shown took: denoising.
     pub developing: Took,
     /// What encoding it took.
@@ -121,6 +123,7 @@ impl<'d> Studio<'d> {
         let begun = Clock::now();
         let still = engine::draw(&**engine, &design, &shot, job, &mut |_| {})?;
         let took = begun.took();
+        let before = before_tracing(took, &still.report.seconds);
         let begun = Clock::now();
         let clean = still.clean(job);
         let developing = begun.took();
@@ -140,9 +143,21 @@ impl<'d> Studio<'d> {
                 .map(|pixel| pixel.alpha())
                 .collect(),
             took,
+            before,
             developing,
             encoding,
         })
+    }
+}
+
+/// What of a picture goes before its tracing, by its report: one thread's work. Nothing where
+/// it traces nothing.
+fn before_tracing(took: Took, stages: &[(String, f64)]) -> Took {
+    let tracing = stages.iter().find(|stage| stage.0 == "render");
+    let seconds = tracing.map_or(0.0, |tracing| (took.seconds - tracing.1).max(0.0));
+    Took {
+        seconds,
+        processor_seconds: (took.processor_seconds).map(|worked| worked.min(seconds)),
     }
 }
 

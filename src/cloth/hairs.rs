@@ -20,12 +20,9 @@ use crate::yarn::{WeaveGeometry, YarnRecipe};
 /// Most cells that one walk visits.
 const MAX_CELLS: u32 = 1 << 20;
 
-/// The hairs on both faces of a cloth.
-pub struct HairLayer<'a> {
-    cloth: &'a ClothVolume,
-    patch: Arc<HairPatch>,
-    /// Whether each yarn has hairs.
-    hairy: Vec<bool>,
+/// What the hairs of a cloth are made of, wherever it is looked at.
+pub struct HairStock {
+    patch: HairPatch,
     /// Height of the crowns on the front and on the back: where a weft and where a warp
     /// lies on that face, mm.
     crowns: [[f32; 2]; 2],
@@ -33,6 +30,35 @@ pub struct HairLayer<'a> {
     cells: [HairCells; 2],
     /// Extinction of a voxel wholly inside fibre: warp, weft.
     full: [f32; 2],
+}
+
+impl HairStock {
+    /// That of a cloth: it is worth keeping, as long as families, sizes and spacing of the yarns
+    /// stay. `None` when no yarn has any hairs.
+    pub fn new(cloth: &ClothVolume) -> Option<Self> {
+        let set = hairiest(cloth)?;
+        let (warp, weft) = (&set.pair.warp, &set.pair.weft);
+        let patch = HairPatch::new(warp, weft, pitch(cloth), 16)?;
+        let crowns = crowns(warp, weft, pitch(cloth));
+        let cell_mm = patch.voxel_mm.z * CELL as f32;
+        Some(Self {
+            cells: crowns.map(|[a, b]| {
+                let lift = ((a - b).abs() / cell_mm).ceil() as usize;
+                HairCells::new(&patch, lift)
+            }),
+            crowns,
+            full: [warp, weft].map(YarnRecipe::full_extinction),
+            patch,
+        })
+    }
+}
+
+/// The hairs on both faces of a cloth.
+pub struct HairLayer<'a> {
+    cloth: &'a ClothVolume,
+    stock: Arc<HairStock>,
+    /// Whether each yarn has hairs.
+    hairy: Vec<bool>,
     /// Where a patch begins, mm: the first thread is at the corner of one.
     corner: Vec2,
 }
@@ -46,52 +72,31 @@ impl<'a> HairLayer<'a> {
 
     /// The hairs of a cloth; `None` when no yarn of it has any.
     pub fn new(cloth: &'a ClothVolume, hairy: Vec<bool>) -> Option<Self> {
-        Some(Self::of(cloth, HairLayer::patch(cloth)?, hairy))
+        Some(Self::of(cloth, Arc::new(HairStock::new(cloth)?), hairy))
     }
 
-    /// The patch of hairs that repeats over a cloth: it is worth keeping, as long as
-    /// families, sizes and spacing of the yarns stay. `None` when no yarn has any hairs.
-    pub fn patch(cloth: &ClothVolume) -> Option<Arc<HairPatch>> {
-        let set = hairiest(cloth)?;
-        HairPatch::new(&set.pair.warp, &set.pair.weft, pitch(cloth), 16).map(Arc::new)
-    }
-
-    /// The hairs of a cloth, from its own [`HairLayer::patch`].
-    pub fn of(cloth: &'a ClothVolume, patch: Arc<HairPatch>, hairy: Vec<bool>) -> Self {
-        let (crowns, full) = match hairiest(cloth) {
-            Some(set) => (
-                crowns(&set.pair.warp, &set.pair.weft, pitch(cloth)),
-                [&set.pair.warp, &set.pair.weft].map(YarnRecipe::full_extinction),
-            ),
-            None => Default::default(),
-        };
-        let cell_mm = patch.voxel_mm.z * CELL as f32;
-        let size = patch.size_mm();
+    /// The hairs of a cloth, from its own stock.
+    pub fn of(cloth: &'a ClothVolume, stock: Arc<HairStock>, hairy: Vec<bool>) -> Self {
+        let size = stock.patch.size_mm();
         let corner = |threads: &Positions, size: f32| {
             0.0 - threads.origin_mm().rem_euclid(f64::from(size)) as f32
         };
         Self {
             corner: Vec2::new(corner(cloth.ends(), size.x), corner(cloth.picks(), size.y)),
             cloth,
-            crowns,
-            cells: crowns.map(|[a, b]| {
-                let lift = ((a - b).abs() / cell_mm).ceil() as usize;
-                HairCells::new(&patch, lift)
-            }),
-            full,
-            patch,
+            stock,
             hairy,
         }
     }
 
     /// Size of a voxel of the layer, mm.
     pub fn patch_voxel_mm(&self) -> Vec3 {
-        self.patch.voxel_mm
+        self.stock.patch.voxel_mm
     }
 
     /// Height of the surface of a face at a place, mm: crowns blended between crossings.
     fn surface(&self, face: usize, place: Vec3) -> f32 {
-        let [weft, warp] = self.crowns[face];
+        let [weft, warp] = self.stock.crowns[face];
         if (weft - warp).abs() < 1e-4 {
             return weft;
         }
@@ -111,7 +116,7 @@ impl<'a> HairLayer<'a> {
 
     /// Range of a face's surface, mm.
     fn surface_range(&self, face: usize) -> (f32, f32) {
-        let [a, b] = self.crowns[face];
+        let [a, b] = self.stock.crowns[face];
         (a.min(b), a.max(b))
     }
 }
@@ -181,7 +186,7 @@ impl HairLayer<'_> {
     /// z-range of a face's layer, mm.
     fn slab(&self, face: usize) -> (f32, f32) {
         let (low, high) = self.surface_range(face);
-        let (sink, height) = (self.patch.sink_mm, self.patch.size_mm().z);
+        let (sink, height) = (self.stock.patch.sink_mm, self.stock.patch.size_mm().z);
         if face == 0 {
             (low - sink, high - sink + height)
         } else {
@@ -192,7 +197,7 @@ impl HairLayer<'_> {
     /// Where cells of a face's layer are counted from, and voxels per mm there.
     fn frame(&self, face: usize) -> (Vec3, Vec3) {
         let (low, high) = self.slab(face);
-        let scale = self.patch.voxel_mm.recip() / CELL as f32;
+        let scale = self.stock.patch.voxel_mm.recip() / CELL as f32;
         let corner = self.corner.extend(0.0);
         // The back is the mirror image.
         if face == 0 {
@@ -301,13 +306,13 @@ impl MajorantWalk for HairWalk<'_> {
                 self.cells = None;
                 continue;
             }
-            let HairCell { fill, reach } = self.layer.cells[face].at(self.cell.to_array());
+            let HairCell { fill, reach } = self.layer.stock.cells[face].at(self.cell.to_array());
             self.here = self.cell;
             let from = self.t;
             let reach = i32::from(reach).max(1) - 1;
             self.t = self.leave_cube(&cells, reach).min(end).max(from);
             if fill > 0 && self.t > from {
-                let [warp, weft] = self.layer.full;
+                let [warp, weft] = self.layer.stock.full;
                 let majorant = f32::from(fill) * (1.0 / 255.0) * warp.max(weft);
                 return Some(Stretch {
                     start: from,
@@ -328,7 +333,7 @@ impl MajorantWalk for HairWalk<'_> {
         let over = point.z - layer.surface(face, point);
         let over = if face == 0 { over } else { -over };
         let place = point.truncate() - layer.corner;
-        let place = place.extend(over + layer.patch.sink_mm) / layer.patch.voxel_mm;
+        let place = place.extend(over + layer.stock.patch.sink_mm) / layer.stock.patch.voxel_mm;
         // The stretch lies in one cell; rounding may not carry it beside it.
         let within = |place: f32, low: i32, high: i32| {
             let [low, high] = [low, high].map(|cell| (cell * CELL as i32) as f32);
@@ -338,11 +343,11 @@ impl MajorantWalk for HairWalk<'_> {
         let place = Vec3::new(
             within(place.x, x, x + 1),
             within(place.y, y, y + 1),
-            within(place.z, z - layer.cells[face].lift, z + 1),
+            within(place.z, z - layer.stock.cells[face].lift, z + 1),
         );
-        let voxel = layer.patch.voxel(place);
+        let voxel = layer.stock.patch.voxel(place);
         let weft = voxel.is_weft();
-        let sigma = f32::from(voxel.fill()) * (1.0 / 255.0) * layer.full[usize::from(weft)];
+        let sigma = f32::from(voxel.fill()) * (1.0 / 255.0) * layer.stock.full[usize::from(weft)];
         if !(sigma > 0.0 && sigma >= least) {
             return Voxel::EMPTY;
         }

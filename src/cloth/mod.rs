@@ -28,7 +28,7 @@ pub use build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
 pub use export::{ClothWindow, Part, Region, WindowError};
 pub use face_relief::{FaceRelief, TEXELS};
 pub use face_table::{FaceTable, Texel};
-pub use hairs::{HairLayer, HairWalk};
+pub use hairs::{HairLayer, HairStock, HairWalk};
 pub use prepare::{
     Followed, PreparedCloth, UnfinishedCloth, check_extent, needed, prepare, prepare_woven,
 };

@@ -13,9 +13,8 @@ use glam::Vec3;
 
 use super::build::{ClothError, ClothSettings, ClothVolume, YarnClasses};
 use super::colour;
-use super::hairs::HairLayer;
+use super::hairs::{HairLayer, HairStock};
 use crate::design::{Design, WeavePattern};
-use crate::exemplar::hairs::HairPatch;
 use crate::exemplar::{ExemplarError, ExemplarSet, ExemplarStore, Pair, VoxelGrid, bytes_at_most};
 use crate::job::Job;
 use crate::memory;
@@ -35,7 +34,7 @@ pub struct PreparedCloth {
     /// The part of a very large design that it has; `None` = all of it.
     within: Option<Stretch>,
     /// Hairs, made when first looked at.
-    hairs: OnceLock<Option<Arc<HairPatch>>>,
+    hairs: OnceLock<Option<Arc<HairStock>>>,
 }
 
 /// A cloth that follows an edit.
@@ -110,9 +109,10 @@ pub fn check_extent(design: &Design, extent: &Stretch) -> Result<(), ClothError>
 impl PreparedCloth {
     /// The hairs over `cloth`, this cloth made ready for a view; `None` where there are none.
     pub fn hair_layer<'c>(&self, cloth: &'c ClothVolume) -> Option<HairLayer<'c>> {
-        let patch = self.hairs.get_or_init(|| HairLayer::patch(cloth)).clone()?;
+        let made = || HairStock::new(cloth).map(Arc::new);
+        let stock = self.hairs.get_or_init(made).clone()?;
         let hairy = HairLayer::hairy(self.design.yarns());
-        Some(HairLayer::of(cloth, patch, hairy))
+        Some(HairLayer::of(cloth, stock, hairy))
     }
 
     /// The cloth.

@@ -28,12 +28,16 @@ pub struct Promise {
 
 /// Share of the seconds, at most, that working it out may take.
 const LOOKING: f64 = 0.05;
-/// Paths a pixel of the first look, and its blocks.
+/// Paths a pixel of the first look, and its blocks, at most.
 const FIRST: (u32, usize) = (4, 24);
+/// Share of the seconds that are left, at most, that it may take, but for its least blocks.
+const FIRST_LOOKING: f64 = 0.1;
+/// Its blocks, at least.
+const LEAST: usize = 6;
 /// Paths a pixel of the second, at most: of fewer the noise of dark places is not known, and it
 /// comes out too small.
 const MOST_SPP: u32 = 64;
-/// Its blocks, at least.
+/// Blocks of the second, at least.
 const FEWEST: f64 = 48.0;
 /// Most paths a pixel that are promised.
 const MOST_PATHS: f64 = 65_536.0;
@@ -51,18 +55,31 @@ pub fn afford(
     (budget, begun): (Budget, Instant),
     job: &Job,
 ) -> Result<Option<(StillRequest, Promise)>, StillError> {
-    let mut eye = Eye::new(renderer, request, job)?;
-    let all = std::mem::take(&mut eye.corners);
-    eye.corners = some_of(&all, FIRST.1);
-    // What is made at the first look is no part of a path's time.
-    if eye.look(engine, request, 1, &|_| {})?.is_none() {
+    if matches!(budget, Budget::DeltaE(_)) {
         return Ok(None);
     }
-    let Some(mut seen) = eye.look(engine, request, FIRST.0, &|_| {})? else {
+    let mut eye = Eye::new(renderer, request, job)?;
+    let all = std::mem::take(&mut eye.corners);
+    eye.corners = some_of(&all, LEAST);
+    // What is made at a first glance is no part of a path's time.
+    let Some(glance) = eye.look(engine, request, 1, &|_| {})? else {
         return Ok(None);
     };
     let pixels = f64::from(request.width) * f64::from(request.height);
     let per_path = |seen: &BlocksSeen| seen.took.seconds / seen.counters.paths.max(1) as f64;
+    // A short time leaves few blocks to look at.
+    let blocks = match budget {
+        Budget::Seconds(seconds) => {
+            let left = (seconds - begun.elapsed().as_secs_f64()).max(0.0);
+            let paths = FIRST_LOOKING * left / per_path(&glance);
+            (paths / f64::from(FIRST.0 * BLOCK * BLOCK)) as usize
+        }
+        Budget::Error(_) | Budget::DeltaE(_) => FIRST.1,
+    };
+    eye.corners = some_of(&all, blocks.clamp(LEAST, FIRST.1));
+    let Some(mut seen) = eye.look(engine, request, FIRST.0, &|_| {})? else {
+        return Ok(None);
+    };
     // A longer look where there is time for it.
     let time = match budget {
         Budget::Seconds(seconds) => seconds,

@@ -137,6 +137,9 @@ fn what_theory_says(accuracy: &Accuracy) -> Result<(), String> {
     Ok(())
 }
 
+/// Makes a measurement wrong.
+type Spoil = fn(&mut Accuracy);
+
 #[test]
 fn curves_fall_where_theory_says_so() {
     let accuracy = measured(&["method", "rank", "patch", "order", "spp", "png-bits"]);
@@ -152,7 +155,7 @@ fn curves_fall_where_theory_says_so() {
     assert!(!point(&accuracy, "spp", "4096").measured);
 
     // Measurements that are deliberately wrong are noticed, each by what it gets wrong.
-    let wrong: [(&str, &str, fn(&mut Accuracy)); 6] = [
+    let wrong: [(&str, &str, Spoil); 6] = [
         ("order", "two settings exchanged", |accuracy| {
             let settings = &mut of(accuracy, "order").settings;
             let [one, other] = [settings[0].clone(), settings[4].clone()];

@@ -22,10 +22,8 @@ fn tests_of(file: &str) -> HashSet<String> {
 fn collect(items: &[syn::Item], tests: &mut HashSet<String>) {
     for item in items {
         match item {
-            syn::Item::Fn(function) => {
-                if function.attrs.iter().any(|a| a.path().is_ident("test")) {
-                    tests.insert(function.sig.ident.to_string());
-                }
+            syn::Item::Fn(function) if function.attrs.iter().any(|a| a.path().is_ident("test")) => {
+                tests.insert(function.sig.ident.to_string());
             }
             syn::Item::Mod(module) => {
                 let within = module.content.as_ref();
