@@ -118,9 +118,10 @@ class Tour:
         desk.sees("Stop measuring")
         desk.gone("Stop measuring", seconds=600)
         desk.fill("Budget", "field", "5 s", enter=False)
-        order = desk.find("Scatterings followed", part=True)
-        if order:
-            desk.click_at(*middle(order))
+        # What the budget says of it is longer.
+        listed = [n for n in desk.nodes() if re.fullmatch(r"Scatterings followed: \d+", n.name)]
+        if listed:
+            desk.click_at(*middle(listed[0]))
         self.rest()
         time.sleep(2)
         self.keep("accuracy")

@@ -8,7 +8,7 @@ use super::words;
 use crate::tokens::{self, Palette};
 
 /// Least height of a plot, points.
-const LEAST: f32 = 30.0 * tokens::GRID;
+const LEAST: f32 = 24.0 * tokens::GRID;
 /// How near to a setting the pointer has to be, points.
 const NEAR: f32 = 20.0;
 /// Errors of nothing stand below the least that there is, at this share of it.
