@@ -208,9 +208,13 @@ fn accuracy_is_measured_and_a_setting_is_taken() {
             .query_by_label_contains("expected seconds")
             .is_some()
     );
-    harness.state_mut().panes.accuracy.budget("0.5 s");
+    harness.state_mut().panes.accuracy.budget("900 s");
     harness.run_steps(2);
     assert!(harness.query_by_label_contains("% wrong").is_some());
+    harness.state_mut().panes.accuracy.budget("0.000001 ms");
+    harness.run_steps(2);
+    let fastest = "No measured settings are so fast";
+    assert!(harness.query_by_label_contains(fastest).is_some());
     harness.state_mut().panes.accuracy.budget("0.000001%");
     harness.run_steps(2);
     let none = "No measured settings are so good.";

@@ -9,12 +9,22 @@ use crate::tokens::{self, Palette};
 use crate::window::action::Action;
 
 /// Width of what is written, points.
-const WIDTH: f32 = 20.0 * tokens::GRID;
+const WIDTH: f32 = 32.0 * tokens::GRID;
 
-/// What was written.
+/// What was written, and what the curves say of it.
 #[derive(Default)]
 pub struct BudgetForm {
     text: String,
+    found: Option<Found>,
+}
+
+/// What the curves say of a text.
+struct Found {
+    text: String,
+    /// Which curves, as whoever measures counts them.
+    curves: (u64, usize),
+    /// The best use of the budget; or why there is none.
+    choice: Result<Choice, String>,
 }
 
 impl BudgetForm {
@@ -24,11 +34,24 @@ impl BudgetForm {
         text.clone_into(&mut self.text);
     }
 
-    /// Shows it, with what the curves say of it; `asked` is the picture that is looked at.
+    /// What the curves say of what is written: many settings are tried for that, so once.
+    fn choice(&mut self, accuracy: &Accuracy, curves: (u64, usize)) -> &Result<Choice, String> {
+        let found = self.found.take();
+        let found = found.filter(|found| found.text == self.text && found.curves == curves);
+        let found = found.unwrap_or_else(|| Found {
+            text: self.text.clone(),
+            curves,
+            choice: best(accuracy, &self.text),
+        });
+        &self.found.insert(found).choice
+    }
+
+    /// Shows it, with what the curves say of it, which are the `number`-th that were measured;
+    /// `asked` is the picture that is looked at.
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        accuracy: &Accuracy,
+        (accuracy, number): (&Accuracy, u64),
         asked: &Asked,
         actions: &mut Vec<Action>,
     ) {
@@ -43,23 +66,18 @@ impl BudgetForm {
             if self.text.trim().is_empty() {
                 return;
             }
-            let choice = match self.text.parse::<Budget>() {
-                Ok(budget) => accuracy.within(budget),
+            let choice = match self.choice(accuracy, (number, accuracy.dials.len())) {
+                Ok(choice) => choice,
                 Err(wrong) => {
                     ui.label(RichText::new(wrong).color(palette.warning));
                     return;
                 }
             };
-            let Some(choice) = choice else {
-                let told = "No measured settings are so good.";
-                ui.label(RichText::new(told).color(palette.warning));
-                return;
-            };
-            let changes = changes(&choice, asked);
+            let changes = changes(choice, asked);
             let set = ui.add_enabled(!changes.is_empty(), Button::new("Set the dials"));
             let entered =
                 edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            let told = said(&choice, &changes);
+            let told = said(choice, &changes);
             if set.clicked() || entered {
                 let set = changes
                     .into_iter()
@@ -68,6 +86,20 @@ impl BudgetForm {
             }
             ui.label(told);
         });
+    }
+}
+
+/// The best use of what is written; or why there is none.
+fn best(accuracy: &Accuracy, text: &str) -> Result<Choice, String> {
+    let budget: Budget = text.parse()?;
+    let choice = accuracy.within(budget);
+    let choice = choice.ok_or("No measured settings are so good.")?;
+    match budget {
+        Budget::Seconds(seconds) if choice.seconds > seconds => Err(format!(
+            "No measured settings are so fast: the fastest take {} s.",
+            number(choice.seconds)
+        )),
+        _ => Ok(choice),
     }
 }
 
@@ -90,7 +122,10 @@ fn said(choice: &Choice, changes: &[(Axis, String)]) -> String {
         .map_or_else(String::new, |delta_e| format!(", ΔE {delta_e:.1}"));
     let paths = choice
         .paths()
-        .map_or_else(String::new, |paths| format!(" · {paths} paths a pixel"));
+        .map_or_else(String::new, |paths| match paths {
+            1 => " · one path a pixel".to_owned(),
+            _ => format!(" · {paths} paths a pixel"),
+        });
     let set = match changes {
         [] => "the dials are so already".to_owned(),
         changes => (changes.iter())

@@ -86,7 +86,8 @@ impl PaneView for AccuracyPane {
             ui.label(RichText::new(told).color(Palette::current(ui).warning));
         }
         if let (None, Some(asked)) = (&self.running, self.asked()) {
-            self.budget.show(ui, &accuracy, &asked, actions);
+            let numbered = (&accuracy, self.measurement);
+            self.budget.show(ui, numbered, &asked, actions);
         }
         let known = |name: &String| accuracy.dials.iter().any(|curve| curve.name == *name);
         let dial = self.dial.clone().filter(known);
