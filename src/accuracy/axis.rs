@@ -80,11 +80,11 @@ impl Axis {
         }
     }
 
-    /// What it is.
+    /// What it is, within a sentence or as one: without a full stop.
     pub fn about(&self) -> &'static str {
         match self {
             Self::Dial(dial) => dial.about,
-            Self::Effect(effect) => effect.about(),
+            Self::Effect(effect) => effect.about().trim_end_matches('.'),
             Self::Renderer => "what draws the picture",
         }
     }
@@ -200,6 +200,7 @@ mod tests {
             assert!(ladder.len() >= 2, "{name}");
             assert_eq!(ladder.last().copied(), Some(axis.reference()), "{name}");
             assert!(!axis.measure().unit().is_empty() && !axis.about().is_empty());
+            assert!(!axis.about().ends_with('.'), "{name}");
             assert_eq!(all.iter().filter(|other| other.name() == name).count(), 1);
             assert_eq!(Axis::named(name).unwrap().name(), name);
             for value in ladder {

@@ -180,7 +180,7 @@ fn section(text: &mut String, curve: &Curve) {
          ![{name}, setting by setting]({})\n\n\
          | setting | time, s | of processors, s | error | ΔE₀₀ | SSIM | |\n\
          |---|--:|--:|--:|--:|--:|---|\n",
-        curve.about.trim_end_matches('.'),
+        curve.about,
         curve.measure.about(),
         curve.unit,
         curve.current,

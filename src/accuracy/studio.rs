@@ -123,7 +123,12 @@ impl<'d> Studio<'d> {
         let begun = Clock::now();
         let still = engine::draw(&**engine, &design, &shot, job, &mut |_| {})?;
         let took = begun.took();
-        let before = before_tracing(took, &still.report.seconds);
+        // One thread's work.
+        let seconds = (took.seconds - still.report.stage("render")).max(0.0);
+        let before = Took {
+            seconds,
+            processor_seconds: (took.processor_seconds).map(|worked| worked.min(seconds)),
+        };
         let begun = Clock::now();
         let clean = still.clean(job);
         let developing = begun.took();
@@ -147,17 +152,6 @@ impl<'d> Studio<'d> {
             developing,
             encoding,
         })
-    }
-}
-
-/// What of a picture goes before its tracing, by its report: one thread's work. Nothing where
-/// it traces nothing.
-fn before_tracing(took: Took, stages: &[(String, f64)]) -> Took {
-    let tracing = stages.iter().find(|stage| stage.0 == "render");
-    let seconds = tracing.map_or(0.0, |tracing| (took.seconds - tracing.1).max(0.0));
-    Took {
-        seconds,
-        processor_seconds: (took.processor_seconds).map(|worked| worked.min(seconds)),
     }
 }
 

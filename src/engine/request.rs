@@ -234,3 +234,11 @@ pub struct StillReport {
     /// One line each: what was replaced, cut short or not followed.
     pub warnings: Vec<String>,
 }
+
+impl StillReport {
+    /// Seconds of a stage; 0 where there was none of that name.
+    pub fn stage(&self, name: &str) -> f64 {
+        let stage = self.seconds.iter().find(|(known, _)| known == name);
+        stage.map_or(0.0, |(_, seconds)| *seconds)
+    }
+}

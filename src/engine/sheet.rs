@@ -259,7 +259,7 @@ fn join(all: &mut StillReport, still: &Still, first: bool) {
         return;
     }
     let paths =
-        all.paths_per_second * stage(all, "render") + one.paths_per_second * stage(one, "render");
+        all.paths_per_second * all.stage("render") + one.paths_per_second * one.stage("render");
     for (name, seconds) in &one.seconds {
         match all.seconds.iter_mut().find(|(known, _)| known == name) {
             Some((_, sum)) => *sum += seconds,
@@ -267,7 +267,7 @@ fn join(all: &mut StillReport, still: &Still, first: bool) {
         }
     }
     all.total_seconds += one.total_seconds;
-    let rendering = stage(all, "render");
+    let rendering = all.stage("render");
     if rendering > 0.0 {
         all.paths_per_second = paths / rendering;
     }
@@ -288,12 +288,6 @@ fn join(all: &mut StillReport, still: &Still, first: bool) {
     {
         (all.error, all.error_interval) = (one.error, one.error_interval);
     }
-}
-
-/// Seconds of a stage.
-fn stage(report: &StillReport, name: &str) -> f64 {
-    let stage = report.seconds.iter().find(|(known, _)| known == name);
-    stage.map_or(0.0, |(_, seconds)| *seconds)
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@
 //! a design or a light are left out with a bound of nothing. [`survey`] looks at all others too,
 //! with and without: that says what they change and cost, but not to a per cent, so that they
 //! are never left out by that; [`survey_in_pictures`] shows it as well. [`afford`] does for a
-//! [`Budget`](crate::plan::Budget) of time or of error what `settle` does for a tolerance, and says beforehand what
-//! the picture will come to.
+//! [`Budget`](crate::plan::Budget) of time or of error what `settle` does for a tolerance, and
+//! says beforehand what the picture will come to.
 
 mod afford;
 mod block_change;

@@ -14,6 +14,8 @@ use crate::scene::light::{LightRig, Sky};
 pub(super) const BLOCKS: u32 = 192;
 /// Paths a pixel of a look.
 const SPP: u32 = 16;
+/// Shares of the work that differ by no more are told as one.
+const HARDLY: f64 = 0.02;
 /// Changes below this share of a look's noise are not told apart from it.
 const HIDDEN: f64 = 0.5;
 
@@ -45,6 +47,16 @@ pub struct Need {
 }
 
 impl Need {
+    /// How far the looks differed in what it costs, in words to stand behind that share; nothing
+    /// where they hardly did.
+    pub fn cost_range(&self) -> String {
+        let [low, high] = self.cost_interval.unwrap_or_default();
+        match high - low > HARDLY {
+            true => format!(" ({:.0} to {:.0})", 100.0 * low.max(0.0), 100.0 * high),
+            false => String::new(),
+        }
+    }
+
     /// What leaving it out changes, in words; `None` where it was not looked at.
     pub fn changes(&self) -> Option<String> {
         let (change, bound) = (self.change?, self.bound?);

@@ -22,8 +22,8 @@ impl FromStr for Budget {
 
     /// `2s`, `2.5 s`, `500ms`, `3min`, `1%`, `ΔE 1` or `dE1`.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let wrong = || "expected seconds, an error or a colour difference, as 2s, 1% or dE1";
-        let wrong = || wrong().to_owned();
+        let wrong =
+            || "expected seconds, an error or a colour difference, as 2s, 1% or dE1".to_owned();
         let text = text.trim();
         if let Some(number) = DELTA.iter().find_map(|delta| text.strip_prefix(delta)) {
             let value: f64 = number.trim().parse().map_err(|_| wrong())?;

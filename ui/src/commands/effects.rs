@@ -69,20 +69,11 @@ fn line(need: &Need) -> String {
     let on = if need.on { "on" } else { "off" };
     let by = need.by.to_string();
     let cost = need.cost.map_or_else(String::new, |cost| match cost {
-        cost if cost > 0.02 => format!("; it is {}{} of the work", share(cost), between(need)),
+        cost if cost > 0.02 => format!("; it is {}{} of the work", share(cost), need.cost_range()),
         _ => "; it costs next to nothing".to_owned(),
     });
     let (name, why) = (need.effect.name(), &need.why);
     format!("  {name:<13} {on:<3} {by:<8} {why}{cost}")
-}
-
-/// How far the looks differed in what an effect costs, where that is told.
-fn between(need: &Need) -> String {
-    let [low, high] = need.cost_interval.unwrap_or_default();
-    match high - low > 0.02 {
-        true => format!(" ({:.0} to {:.0})", 100.0 * low.max(0.0), 100.0 * high),
-        false => String::new(),
-    }
 }
 
 /// What is left out of a picture, in one line.

@@ -260,8 +260,7 @@ impl AccuracyPane {
         for curve in &accuracy.dials {
             let text = format!("{}: {}", words::title_of(curve), self.set_to(curve));
             let entry = ui.selectable_label(curve.name == shown, text);
-            let about = curve.about.trim_end_matches('.');
-            let about = format!("{about}. On the command line: {}", curve.name);
+            let about = format!("{}. On the command line: {}", curve.about, curve.name);
             if entry.on_hover_text(about).clicked() {
                 self.dial = Some(curve.name.clone());
             }
@@ -279,8 +278,7 @@ impl AccuracyPane {
     /// The curve of one dial; says which setting the pointer is at, and whether it was clicked.
     fn curve_ui(&mut self, ui: &mut Ui, curve: &Curve) -> Option<(usize, bool)> {
         let quiet = Palette::current(ui).quiet;
-        let what = curve.about.trim_end_matches('.');
-        let about = format!("{what}. Error: {}.", curve.measure.about());
+        let about = format!("{}. Error: {}.", curve.about, curve.measure.about());
         ui.add(Label::new(RichText::new(about).color(quiet)).truncate());
         plot::show(ui, curve, &self.set_to(curve))
     }

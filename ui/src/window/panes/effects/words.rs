@@ -58,7 +58,9 @@ pub fn found(need: &Need) -> String {
         return format!("{}: leaving it out changes nothing.", sentence(&need.why));
     }
     let cost = match need.cost {
-        Some(cost) if cost > HARDLY => format!("{}{} of the work. ", share(cost), between(need)),
+        Some(cost) if cost > HARDLY => {
+            format!("{}{} of the work. ", share(cost), need.cost_range())
+        }
         Some(_) => "Next to none of the work. ".to_owned(),
         None => String::new(),
     };
@@ -66,15 +68,6 @@ pub fn found(need: &Need) -> String {
         (Decider::Scene, Some(_), _) => format!("{cost}{}.", sentence(&need.why)),
         (_, _, Some(changes)) => format!("{cost}Without it {changes}."),
         _ => cost.trim_end().to_owned(),
-    }
-}
-
-/// How far the looks differed in what an effect costs, where that is told.
-fn between(need: &Need) -> String {
-    let [low, high] = need.cost_interval.unwrap_or_default();
-    match high - low > HARDLY {
-        true => format!(" ({:.0} to {:.0})", 100.0 * low.max(0.0), 100.0 * high),
-        false => String::new(),
     }
 }
 
