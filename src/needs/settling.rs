@@ -19,6 +19,9 @@ const HARDLY: f64 = 0.02;
 /// Changes below this share of a look's noise are not told apart from it.
 const HIDDEN: f64 = 0.5;
 
+/// Changes by more than this share of their light are not told in numbers.
+const ALTOGETHER: f64 = 1.0;
+
 /// What was found out about one effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Need {
@@ -66,6 +69,7 @@ impl Need {
                 "a place changes by less than the noise of this look, {}",
                 at_most(noise)
             ),
+            None if change > ALTOGETHER => "most places change altogether".to_owned(),
             None => format!(
                 "a place typically changes by {}, 95 of 100 by {} at most",
                 at_most(change),

@@ -128,8 +128,8 @@ panes! {
     section: section::Section, Section, "Cut", [Num6], "Show the section", "How the yarns pass over and under along an end or a pick";
     history: history::History, History, "History", [Num7], "Show history", "All changes by name; a click goes back to one";
     log: log::Log, Log, "Log", [Num8], "Show log", "All that was said, warnings and errors";
-    accuracy: accuracy::AccuracyPane, Accuracy, "Accuracy", [Num9], "Show accuracy", "What each approximation costs in time and how wrong it is, measured";
-    effects: effects::EffectsPane, Effects, "Effects", [Num0], "Show effects", "What the picture simulates, what each part of it costs and what may be left out";
+    accuracy: accuracy::AccuracyPane, Accuracy, "Accuracy", [Num9], "Show accuracy", "What each approximation costs in time and how wrong it is, measured; a budget sets the dials";
+    effects: effects::EffectsPane, Effects, "Effects", [Num0], "Show effects", "What the picture simulates; a look says what each part of it costs and what may be left out";
 }
 
 impl Panes {

@@ -1,5 +1,6 @@
 //! Each pane without a display: what it shows and what it asks for, by accessible label.
 
+use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pickglass::accuracy::{Asked, Axis};
@@ -213,12 +214,24 @@ fn accuracy_is_measured_and_a_setting_is_taken() {
     assert!(harness.query_by_label_contains("% wrong").is_some());
     harness.state_mut().panes.accuracy.budget("0.000001 ms");
     harness.run_steps(2);
-    let fastest = "No measured settings are so fast";
+    let fastest = "No measured settings of a traced picture are so fast";
     assert!(harness.query_by_label_contains(fastest).is_some());
     harness.state_mut().panes.accuracy.budget("0.000001%");
     harness.run_steps(2);
     let none = "No measured settings are so good.";
     assert!(harness.query_by_label(none).is_some());
+    // Where nothing can be set, the keyboard stays in the field.
+    harness
+        .get_by_role_and_label(Role::TextInput, "Budget")
+        .focus();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    assert!(
+        harness
+            .get_by_role_and_label(Role::TextInput, "Budget")
+            .is_focused()
+    );
     // A change of the design is told, and told no more once it is undone.
     let rename = Edit::Rename("another".to_owned());
     harness.state_mut().document.apply(rename).expect("an edit");

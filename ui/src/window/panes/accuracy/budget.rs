@@ -63,20 +63,25 @@ impl BudgetForm {
                 .desired_width(WIDTH);
             let tip = "So many seconds, or so little error: the curves choose the dials";
             let edit = ui.add(edit).labelled_by(label.id).on_hover_text(tip);
+            let entered =
+                edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if self.text.trim().is_empty() {
                 return;
             }
             let choice = match self.choice(accuracy, (number, accuracy.dials.len())) {
                 Ok(choice) => choice,
                 Err(wrong) => {
+                    // It is to be written anew, and letters are keys of tools elsewhere.
+                    if entered {
+                        edit.request_focus();
+                    }
                     ui.label(RichText::new(wrong).color(palette.warning));
                     return;
                 }
             };
             let changes = changes(choice, asked);
             let set = ui.add_enabled(!changes.is_empty(), Button::new("Set the dials"));
-            let entered =
-                edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let set = set.on_hover_text(super::NOT_UNDONE);
             let told = said(choice, &changes);
             if set.clicked() || entered {
                 let set = changes
@@ -96,11 +101,22 @@ fn best(accuracy: &Accuracy, text: &str) -> Result<Choice, String> {
     let choice = choice.ok_or("No measured settings are so good.")?;
     match budget {
         Budget::Seconds(seconds) if choice.seconds > seconds => Err(format!(
-            "No measured settings are so fast: the fastest take {} s.",
-            number(choice.seconds)
+            "No measured settings of a traced picture are so fast: the fastest take {}.{}",
+            words::duration(choice.seconds),
+            first_sight(accuracy)
         )),
         _ => Ok(choice),
     }
+}
+
+/// What first sight takes, where that was measured.
+fn first_sight(accuracy: &Accuracy) -> String {
+    let curve = accuracy.dials.iter().find(|curve| curve.name == "renderer");
+    let sight = curve.and_then(|curve| curve.point("sight"));
+    sight.map_or_else(String::new, |sight| {
+        let took = words::duration(sight.seconds);
+        format!(" First sight, which no budget counts, takes {took}.")
+    })
 }
 
 /// What the window sets for a choice, of what is set otherwise now.
@@ -117,25 +133,27 @@ fn changes(choice: &Choice, asked: &Asked) -> Vec<(Axis, String)> {
 
 /// What a choice comes to, and what is set for it.
 fn said(choice: &Choice, changes: &[(Axis, String)]) -> String {
-    let seen = choice
-        .delta_e
-        .map_or_else(String::new, |delta_e| format!(", ΔE {delta_e:.1}"));
+    let seen = choice.delta_e.map_or_else(String::new, |delta_e| {
+        format!(", {}", words::delta_e(delta_e))
+    });
     let paths = choice
         .paths()
         .map_or_else(String::new, |paths| match paths {
-            1 => " · one path a pixel".to_owned(),
-            _ => format!(" · {paths} paths a pixel"),
+            1 => " with one path a pixel".to_owned(),
+            _ => format!(" with {paths} paths a pixel"),
         });
     let set = match changes {
-        [] => "the dials are so already".to_owned(),
+        [] => "the dials are set so already".to_owned(),
         changes => (changes.iter())
             .map(|(axis, value)| format!("{}: {value}", words::title(axis)))
             .collect::<Vec<_>>()
             .join(", "),
     };
+    // In the window, paths are not set: it goes on until the picture is good.
     format!(
-        "{} s, {} % wrong{seen}{paths} · {set}",
-        number(choice.seconds),
+        "After {} the picture is {} % wrong{seen}{paths}; it refines on, as the menu View \
+         says under Refine until · {set}",
+        words::duration(choice.seconds),
         number(100.0 * choice.error)
     )
 }

@@ -33,6 +33,8 @@ const LIST: f32 = 44.0 * tokens::GRID;
 const SETTINGS: f32 = 84.0 * tokens::GRID;
 /// Width from which they stand beside the plot, points.
 const BESIDE: f32 = 170.0 * tokens::GRID;
+/// Height up to which all of it scrolls together, points.
+const LOW: f32 = 56.0 * tokens::GRID;
 /// Height of a plot above them, and of the picture of a setting, points.
 const PLOT: f32 = 52.0 * tokens::GRID;
 const PICTURE: f32 = 30.0 * tokens::GRID;
@@ -73,7 +75,9 @@ impl PaneView for AccuracyPane {
         let accuracy = self.found().accuracy.clone();
         let Some(accuracy) = accuracy.filter(|accuracy| !accuracy.dials.is_empty()) else {
             let told = "What each approximation costs in time, and how wrong it is: measured on \
-                        this machine, of this design as it is looked at. The cloth waits meanwhile.";
+                        this machine, of this design as it is looked at. The cloth waits meanwhile. \
+                        Then each dial has its curve, a click on a setting takes it, and a budget \
+                        of seconds, of error or of colour sets them all.";
             ui.label(RichText::new(told).color(quiet));
             return;
         };
@@ -96,7 +100,7 @@ impl PaneView for AccuracyPane {
             return;
         };
         let room = ui.available_size();
-        if room.x > BESIDE {
+        if room.x > BESIDE && room.y > LOW {
             let settings = SETTINGS.min(0.4 * room.x);
             let plot = room.x - LIST - settings - 2.0 * ui.spacing().item_spacing.x;
             ui.horizontal_top(|ui| {
@@ -175,7 +179,7 @@ impl AccuracyPane {
     fn head_ui(&mut self, ui: &mut Ui, document: &Document) {
         ui.horizontal_wrapped(|ui| {
             if let Some(running) = &self.running {
-                ui.label(running.progress());
+                ui.label(format!("{}: {}", self.effort, running.progress()));
                 if ui.button("Stop measuring").clicked() {
                     running.cancel();
                 }
@@ -278,8 +282,13 @@ impl AccuracyPane {
     /// The curve of one dial; says which setting the pointer is at, and whether it was clicked.
     fn curve_ui(&mut self, ui: &mut Ui, curve: &Curve) -> Option<(usize, bool)> {
         let quiet = Palette::current(ui).quiet;
-        let about = format!("{}. Error: {}.", curve.about, curve.measure.about());
-        ui.add(Label::new(RichText::new(about).color(quiet)).truncate());
+        let about = format!(
+            "{}. Error: {}; what other dials make wrong is not in it. Time: of the whole picture, \
+             dial after dial, so that other work on this machine shows in it.",
+            super::effects::sentence(&curve.about),
+            curve.measure.about()
+        );
+        ui.add(Label::new(RichText::new(about).color(quiet)).wrap());
         plot::show(ui, curve, &self.set_to(curve))
     }
 
@@ -349,11 +358,11 @@ impl AccuracyPane {
         }
         if let Some((_, texture)) = &self.texture {
             let size = texture.size_vec2();
+            let at = format!("At {}:", curve.settings[at].value);
+            ui.label(RichText::new(at).color(Palette::current(ui).quiet));
             let shown = egui::Image::new(texture).fit_to_exact_size(size * (PICTURE / size.y));
-            ui.add(shown).on_hover_text(format!(
-                "What it looks like at {}",
-                curve.settings[at].value
-            ));
+            ui.add(shown)
+                .on_hover_text("What a piece of the cloth looks like at this setting");
         }
     }
 }

@@ -24,6 +24,7 @@ pub fn title_of(curve: &Curve) -> String {
 pub fn unit(curve: &Curve) -> &'static str {
     match curve.measure {
         Measure::Seams => "yarn diameters",
+        Measure::Kinks => "degrees",
         Measure::Continuity => "% of neighbours",
         Measure::Repetition => "% of crossings",
         Measure::Rounding => "% of white",
@@ -34,7 +35,7 @@ pub fn unit(curve: &Curve) -> &'static str {
 /// An error in that unit.
 pub fn in_unit(curve: &Curve, error: f64) -> f64 {
     match curve.measure {
-        Measure::Seams => error,
+        Measure::Seams | Measure::Kinks => error,
         _ => 100.0 * error,
     }
 }
@@ -43,6 +44,7 @@ pub fn in_unit(curve: &Curve, error: f64) -> f64 {
 pub fn row(curve: &Curve, point: &Point) -> String {
     let unit = match curve.measure {
         Measure::Seams => " yarn diameters",
+        Measure::Kinks => " degrees",
         _ => " %",
     };
     let error = match point.error > 0.0 {
@@ -50,7 +52,7 @@ pub fn row(curve: &Curve, point: &Point) -> String {
         false => "no error".to_owned(),
     };
     let seen = point.delta_e.map_or_else(String::new, |delta_e| {
-        format!(" · ΔE {delta_e:.1} from 30 cm")
+        format!(" · {} from 30 cm", self::delta_e(delta_e))
     });
     let knee = match curve.knee.as_ref() == Some(&point.value) {
         true => " · after it more time brings little",
@@ -58,8 +60,50 @@ pub fn row(curve: &Curve, point: &Point) -> String {
     };
     let predicted = if point.measured { "" } else { " · predicted" };
     format!(
-        "{} · {} s · {error}{seen}{knee}{predicted}",
+        "{} · {} · {error}{seen}{knee}{predicted}",
         point.value,
-        number(point.seconds)
+        duration(point.seconds)
     )
+}
+
+/// A time, in units in which it is no large number.
+pub fn duration(seconds: f64) -> String {
+    let units = [
+        ("min", 60.0, 180.0),
+        ("h", 3600.0, 3.0 * 3600.0),
+        ("days", 86400.0, 3.0 * 86400.0),
+    ];
+    let coarser = units.iter().rev().find(|(_, _, from)| seconds >= *from);
+    match coarser {
+        Some((unit, length, _)) => format!("{} {unit}", number(seconds / length)),
+        None => format!("{} s", number(seconds)),
+    }
+}
+
+/// A colour difference.
+pub fn delta_e(delta_e: f64) -> String {
+    match delta_e {
+        small if small < 0.05 => "ΔE under 0.1".to_owned(),
+        _ => format!("ΔE {delta_e:.1}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_told_in_units_of_their_size() {
+        for (seconds, told) in [
+            (0.0123, "0.0123 s"),
+            (21.0, "21.0 s"),
+            (179.0, "179 s"),
+            (420.0, "7.00 min"),
+            (341_698.0, "3.95 days"),
+        ] {
+            assert_eq!(duration(seconds), told);
+        }
+        assert_eq!(delta_e(0.01), "ΔE under 0.1");
+        assert_eq!(delta_e(3.42), "ΔE 3.4");
+    }
 }

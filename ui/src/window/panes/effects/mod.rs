@@ -20,7 +20,7 @@ use crate::window::task::Outcome;
 use looking::{Look, Looked, Stale};
 use pair::PairView;
 
-pub use words::title;
+pub use words::{sentence, title};
 
 /// What may be left out, as a share of the light of 95 of 100 places.
 const TOLERANCES: [f64; 5] = [0.0, 0.005, 0.01, 0.02, 0.05];
@@ -33,6 +33,9 @@ const AMONG: f32 = 40.0 * tokens::GRID;
 /// Least width of words beside a switch, points.
 const WORDS: f32 = 60.0 * tokens::GRID;
 
+/// Said below what a look found.
+const OVERLAP: &str = "Shares overlap, as light that is scattered meets hairs and shadows as well: \
+                       they do not add up to 100 %.";
 /// Said below the switches.
 const NOT_UNDONE: &str = "A switch is no part of the design: undo leaves it.";
 
@@ -277,6 +280,9 @@ impl EffectsPane {
                 }
             }
             let quiet = Palette::current(ui).quiet;
+            if self.looked.is_some() {
+                ui.label(RichText::new(OVERLAP).color(quiet));
+            }
             ui.label(RichText::new(NOT_UNDONE).color(quiet));
         });
     }

@@ -159,7 +159,7 @@ fn listed(names: &[String]) -> String {
 }
 
 /// With a capital.
-fn sentence(text: &str) -> String {
+pub fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     match letters.next() {
         Some(first) => first.to_uppercase().chain(letters).collect(),
