@@ -172,13 +172,13 @@ pub fn measure(
         let share = (number as f32, left.len() as f32);
         let (curve, crops) = bench.curve(axis, &bench.ladder(axis), runs, &|stage| {
             let stage = (share.0 + stage) / share.1;
-            job.report(&format!("measuring {}", axis.name()), stage);
+            job.report(&format!("then measuring {}", axis.name()), stage);
         })?;
         accuracy.dials.push(curve);
         on_curve(&accuracy, &crops)?;
     }
     if measuring.effort != Effort::Quick && accuracy.trials.is_empty() {
-        let going = |share| job.report("setting dials together", share);
+        let going = |share| job.report("last setting dials together", share);
         accuracy.trials = bench.trials(&accuracy, runs, &going)?;
         if !accuracy.trials.is_empty() {
             on_curve(&accuracy, &Crops::new())?;
@@ -310,7 +310,7 @@ impl<'d> Bench<'d> {
         let of_cloth = |axis: &Axis| {
             matches!(
                 axis.measure(),
-                Measure::Continuity | Measure::Seams | Measure::Repetition
+                Measure::Continuity | Measure::Seams | Measure::Kinks | Measure::Repetition
             )
         };
         let all = Axis::all().into_iter();
@@ -329,7 +329,7 @@ impl<'d> Bench<'d> {
         let whole = self.point("", &[whole], paths, Estimate::exact(0.0));
         let mut matter = Vec::with_capacity(all.len());
         for (number, axis) in all.iter().enumerate() {
-            job.report("trying the dials", number as f32 / all.len() as f32);
+            job.report("first trying all dials", number as f32 / all.len() as f32);
             let ends = [axis.ladder()[0], axis.reference()].map(str::to_owned);
             let (curve, _) = self.curve(axis, &ends, TRIED, &|_| {})?;
             matter.push((number, matters(&curve, whole.seconds)));
@@ -352,7 +352,9 @@ impl<'d> Bench<'d> {
             seconds += each
                 * match axis.measure() {
                     // One picture of each, to look at.
-                    Measure::Continuity | Measure::Seams | Measure::Repetition => settings,
+                    Measure::Continuity | Measure::Seams | Measure::Kinks | Measure::Repetition => {
+                        settings
+                    }
                     Measure::Shown | Measure::Engine | Measure::Rounding => {
                         let taken = seeds.min(SHOWN_SEEDS) as f64 * f64::from(SHOWN_LONGER);
                         taken * (settings + 1.0)
@@ -395,7 +397,7 @@ impl<'d> Bench<'d> {
     ) -> Result<(Curve, Crops), AccuracyError> {
         let measure = axis.measure();
         let (settings, crops) = match measure {
-            Measure::Continuity | Measure::Seams | Measure::Repetition => {
+            Measure::Continuity | Measure::Seams | Measure::Kinks | Measure::Repetition => {
                 self.of_synthesis(axis, ladder, runs, going)?
             }
             Measure::Bias => self.biased(axis, ladder, runs, going)?,
@@ -652,6 +654,7 @@ impl<'d> Bench<'d> {
             let (times, errors): (Vec<Took>, Vec<f64>) = (made.iter())
                 .map(|made| match axis.measure() {
                     Measure::Seams => (made.edge_fixing, woven.seams_in_diameters(made)),
+                    Measure::Kinks => (made.edge_fixing, made.seams.kinks[1]),
                     Measure::Repetition => (made.assignment, made.repeated),
                     _ => (made.assignment, discontinuous(made)),
                 })
@@ -895,7 +898,7 @@ fn matters(curve: &Curve, whole: f64) -> f64 {
     };
     let beside = match curve.measure {
         // Their time is that of the synthesis.
-        Measure::Continuity | Measure::Seams | Measure::Repetition => whole,
+        Measure::Continuity | Measure::Seams | Measure::Kinks | Measure::Repetition => whole,
         _ => 0.0,
     };
     let time = ((beside + reference.seconds) / (beside + crude.seconds)).ln();

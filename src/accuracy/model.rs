@@ -142,6 +142,7 @@ fn factors(curve: &Curve, fixed: (f64, f64)) -> Option<Vec<Factor>> {
             // What has another unit does not add to these, nor does another engine.
             Measure::Continuity
             | Measure::Seams
+            | Measure::Kinks
             | Measure::Repetition
             | Measure::Rounding
             | Measure::Engine => None,

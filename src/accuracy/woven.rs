@@ -26,6 +26,8 @@ pub struct Woven {
     pub exemplar_seconds: f64,
     /// Height of a voxel, mm.
     pub voxel_mm: f64,
+    /// How much higher a voxel is than long along x and y.
+    rise: [f32; 2],
     /// Mean diameter of the yarns, mm.
     pub diameter_mm: f64,
 }
@@ -73,6 +75,7 @@ impl Woven {
             heights: sets.iter().map(|set| set.heights.clone()).collect(),
             exemplar_seconds: begun.elapsed().as_secs_f64(),
             voxel_mm: f64::from(grid.voxel_mm.z),
+            rise: [grid.voxel_mm.x, grid.voxel_mm.y].map(|along| grid.voxel_mm.z / along),
             diameter_mm: diameters.iter().sum::<f64>() / diameters.len().max(1) as f64,
             settings,
             catalogue,
@@ -97,7 +100,7 @@ impl Woven {
         let (blocks, _) = ClothVolume::assign(&self.design, &self.catalogue, &settings, job)?;
         let assignment = begun.took();
         let begun = Clock::now();
-        let edge_fix = EdgeFix::new(&self.heights, &self.catalogue, synthesis.rank, job)?;
+        let edge_fix = EdgeFix::new(&self.heights, &self.catalogue, synthesis.closing(), job)?;
         let edge_fixing = begun.took();
 
         let randomisation = Randomisation {
@@ -114,7 +117,7 @@ impl Woven {
         let (design, classes) = (&self.design, &self.classes);
         let set_at =
             |end, pick| classes.set(design.warp_yarn(end, pick), design.weft_yarn(end, pick));
-        let seams = placement.seam_rms(&edge_fix, &self.heights, set_at, job)?;
+        let seams = placement.seam_rms(&edge_fix, &self.heights, set_at, self.rise, job)?;
         Ok(Synthesised {
             assignment,
             edge_fixing,

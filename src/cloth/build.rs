@@ -538,10 +538,11 @@ pub(super) fn fitted(
     lattice: Lattice,
     job: &Job,
 ) -> Result<(Arc<EdgeFix>, Arc<BlockMajorants>), ClothError> {
-    let SynthesisSettings { method, rank, .. } = settings.synthesis;
+    let SynthesisSettings { method, .. } = settings.synthesis;
     let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
     let predicted: Vec<_> = sets.iter().map(|set| set.predicted.clone()).collect();
-    let edge_fix = EdgeFix::with_basis_of(&predicted, &heights, catalogue, rank, job)?;
+    let closing = settings.synthesis.closing();
+    let edge_fix = EdgeFix::with_basis_of(&predicted, &heights, catalogue, closing, job)?;
     job.check().map_err(SynthesisError::from)?;
     let bits = neighbour_bits(catalogue, lattice, method);
     let allowance = Allowance {

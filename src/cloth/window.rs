@@ -219,14 +219,20 @@ impl ClothVolume {
         }
     }
 
-    /// A crossing's block and the neighbours that it has a seam with; neighbours that
-    /// continue it are left out, as they shift nothing.
+    /// A crossing's block and the neighbours that it has a seam with; neighbours that shift
+    /// nothing, as they continue it, are left out.
     pub(super) fn seams_around(&self, end: i64, pick: i64) -> Option<Neighbourhood> {
         let set_at = |end, pick| self.set_at(end, pick);
         let mut around = self.placement().neighbourhood(end, pick, set_at)?;
         for side in Side::ALL {
             let beside = &mut around.sides[side.index()];
-            if beside.is_some_and(|beside| self.edge_fix.continues(around.centre, side, beside)) {
+            let shifts = beside.is_some_and(|beside| {
+                (Face::ALL.into_iter()).any(|face| {
+                    self.edge_fix
+                        .shifts_across(around.centre, side, beside, face)
+                })
+            });
+            if !shifts {
                 *beside = None;
             }
         }

@@ -10,9 +10,13 @@ use rayon::prelude::*;
 use super::bricks::BrickVolume;
 use super::voxelise::VoxelGrid;
 use crate::design::Direction;
-use crate::synthesis::{Catalogue, EdgeHeights, Face, Place, Side};
+use crate::synthesis::{Catalogue, Crown, EdgeHeights, Face, Place, Side};
 use crate::yarn::WeaveGeometry;
 
+/// How far on either side of a border a crown is looked at, as a share of the block.
+const CROWN_REACH: f32 = 0.12;
+/// The middle of a yarn whose mean height is its crown, as a share of the block.
+const CROWN_WIDTH: f32 = 0.6;
 /// Standard deviation of the smoothing along an edge, mm: fibres are 10–20 µm thick.
 const SMOOTHING_MM: f32 = 0.015;
 
@@ -39,6 +43,12 @@ pub(super) fn measure(
             };
             surfaces[face as usize][y * size[0] + x]
         };
+        let reach = edge.crown_reach(grid);
+        let crown = edge.crown(grid, |away| {
+            let across = edge.border + size[edge.axis] - reach + away;
+            let heights = edge.middle().filter_map(|along| height_at(across, along));
+            mean(heights)
+        });
         let known: Vec<Option<f32>> = (0..edge.length)
             .map(|position| {
                 // The border lies between the last stack on either side of it.
@@ -49,7 +59,7 @@ pub(super) fn measure(
                 }
             })
             .collect();
-        edge.profile(&known, grid)
+        (edge.profile(&known, grid), crown)
     });
 }
 
@@ -64,20 +74,27 @@ pub(super) fn predict(
     let mm = [grid.voxel_mm.x, grid.voxel_mm.y];
     fill(heights, catalogue, exemplar, &|place, side, face| {
         let edge = Edge::new(place, side, grid);
+        let height_at = |across: f32, along: usize| {
+            let across = across * mm[edge.axis];
+            let along = (along as f32 + 0.5) * mm[1 - edge.axis];
+            let at = if edge.axis == 0 {
+                [across, along]
+            } else {
+                [along, across]
+            };
+            let z = topmost(weave, at, face)?;
+            Some((z - grid.floor_mm()) / grid.voxel_mm.z)
+        };
+        let border = edge.border as f32;
         let known: Vec<Option<f32>> = (0..edge.length)
-            .map(|position| {
-                let across = edge.border as f32 * mm[edge.axis];
-                let along = ((edge.start + position) as f32 + 0.5) * mm[1 - edge.axis];
-                let at = if edge.axis == 0 {
-                    [across, along]
-                } else {
-                    [along, across]
-                };
-                let z = topmost(weave, at, face)?;
-                Some((z - grid.floor_mm()) / grid.voxel_mm.z)
-            })
+            .map(|position| height_at(border, edge.start + position))
             .collect();
-        edge.profile(&known, grid)
+        let reach = edge.crown_reach(grid) as f32;
+        let crown = edge.crown(grid, |away| {
+            let across = border - reach + away as f32 + 0.5;
+            mean(edge.middle().filter_map(|along| height_at(across, along)))
+        });
+        (edge.profile(&known, grid), crown)
     });
 }
 
@@ -130,6 +147,47 @@ impl Edge {
             border: (crossing[axis] + far) * grid.block[axis],
             start: crossing[1 - axis] * length,
             length,
+        }
+    }
+
+    /// Stacks on either side of the border at which a crown is looked at.
+    fn crown_reach(&self, grid: &VoxelGrid) -> usize {
+        let block = grid.block[self.axis];
+        ((CROWN_REACH * block as f32).round() as usize).clamp(1, block)
+    }
+
+    /// Stacks along the edge that the crown of a yarn takes in.
+    fn middle(&self) -> std::ops::Range<usize> {
+        let aside = (0.5 * (1.0 - CROWN_WIDTH) * self.length as f32).round() as usize;
+        self.start + aside..(self.start + self.length - aside).max(self.start + aside + 1)
+    }
+
+    /// The straight line through the heights of a yarn's middle on both sides of the border;
+    /// `height(k)` is the k-th of them, half a stack and more beyond the first. A yarn that is
+    /// not seen lies level at half height.
+    fn crown(&self, grid: &VoxelGrid, height: impl Fn(usize) -> Option<f32>) -> Crown {
+        let reach = self.crown_reach(grid);
+        let points = (0..2 * reach).filter_map(|away| {
+            let at = away as f32 + 0.5 - reach as f32;
+            Some([1.0, at, at * at, height(away)?, at * height(away)?])
+        });
+        let sums = points.fold([0.0f64; 5], |sums, point| {
+            std::array::from_fn(|k| sums[k] + f64::from(point[k]))
+        });
+        let [n, x, xx, y, xy] = sums;
+        let spread = n * xx - x * x;
+        if n == 0.0 {
+            let height = 0.5 * grid.block[2] as f32;
+            return Crown { height, slope: 0.0 };
+        }
+        let slope = if spread > 0.0 {
+            (n * xy - x * y) / spread
+        } else {
+            0.0
+        };
+        Crown {
+            height: ((y - slope * x) / n) as f32,
+            slope: slope as f32,
         }
     }
 
@@ -198,26 +256,35 @@ fn smooth(profile: &[f32], sigma: f32) -> Vec<f32> {
         .collect()
 }
 
-/// Fills the profiles of one exemplar's blocks.
+/// Fills the profiles and crowns of one exemplar's blocks.
 fn fill(
     heights: &mut EdgeHeights,
     catalogue: &Catalogue,
     exemplar: usize,
-    profile: &(dyn Fn(Place, Side, Face) -> Vec<f32> + Sync),
+    edge: &(dyn Fn(Place, Side, Face) -> (Vec<f32>, Crown) + Sync),
 ) {
     let edges: Vec<_> = (0..catalogue.blocks() as u16)
         .filter(|&id| usize::from(catalogue.place(id).exemplar) == exemplar)
         .flat_map(|id| Side::ALL.map(|side| (id, side)))
         .collect();
-    let profiles: Vec<[Vec<f32>; 2]> = edges
+    let found: Vec<[(Vec<f32>, Crown); 2]> = edges
         .par_iter()
-        .map(|&(id, side)| Face::ALL.map(|face| profile(catalogue.place(id), side, face)))
+        .map(|&(id, side)| Face::ALL.map(|face| edge(catalogue.place(id), side, face)))
         .collect();
-    for (&(id, side), profiles) in edges.iter().zip(&profiles) {
-        for (face, profile) in Face::ALL.into_iter().zip(profiles) {
+    for (&(id, side), found) in edges.iter().zip(&found) {
+        for (face, (profile, crown)) in Face::ALL.into_iter().zip(found) {
             heights.profile_mut(face, id, side).copy_from_slice(profile);
+            *heights.crown_mut(face, id, side) = *crown;
         }
     }
+}
+
+/// The mean of some heights; `None` of none.
+fn mean(heights: impl Iterator<Item = f32>) -> Option<f32> {
+    let (sum, count) = heights.fold((0.0, 0.0), |(sum, count), height| {
+        (sum + height, count + 1.0)
+    });
+    (count > 0.0).then(|| sum / count)
 }
 
 /// Fills gaps linearly, ends constantly; `None` when nothing is known.

@@ -32,6 +32,8 @@ pub enum Measure {
     Continuity,
     /// Root mean square of the steps in height that are left at seams, in yarn diameters.
     Seams,
+    /// By how much yarns that are seen bend where blocks meet, root mean square, degrees.
+    Kinks,
     /// Share of the crossings that look as one repeat of the design further on.
     Repetition,
     /// What is wrong with the picture whatever the number of paths: root mean square against
@@ -54,6 +56,7 @@ impl Measure {
         match self {
             Self::Continuity => "neighbours that do not go on in each other",
             Self::Seams => "steps at seams",
+            Self::Kinks => "kinks of yarns at seams",
             Self::Repetition => "crossings that look as a repeat further on",
             Self::Bias => "wrong however many paths",
             Self::Noise => "noise of the traced picture",
@@ -67,6 +70,7 @@ impl Measure {
         match self {
             Self::Continuity => "of neighbours",
             Self::Seams => "yarn diameters",
+            Self::Kinks => "degrees",
             Self::Repetition => "of crossings",
             Self::Bias | Self::Noise | Self::Shown | Self::Engine => "relative RMSE",
             Self::Rounding => "of white",

@@ -12,7 +12,7 @@ use crate::job::Job;
 use crate::plan::{Effect, EffectChoice, Settings, Subject};
 use crate::random::Random;
 use crate::scene::View;
-use crate::synthesis::Rank;
+use crate::synthesis::{Rank, Seams};
 
 /// Voxels of this level are quickly made, and no less hard.
 const LEVEL: u32 = 3;
@@ -181,11 +181,12 @@ pub(super) fn noise_as_a_weave(renderer: &Renderer, job: &Job) -> Result<String,
 
 pub(super) fn ranks(renderer: &Renderer, job: &Job) -> Result<String, Fault> {
     let all = [
-        ("off", Rank::Off),
-        ("none", Rank::Truncated(0)),
-        ("one", Rank::Truncated(1)),
-        ("too many", Rank::Truncated(1000)),
-        ("exact", Rank::Exact),
+        ("off", Rank::Off, Seams::Membrane),
+        ("none", Rank::Truncated(0), Seams::Crowns),
+        ("one", Rank::Truncated(1), Seams::Membrane),
+        ("too many", Rank::Truncated(1000), Seams::Membrane),
+        ("exact", Rank::Exact, Seams::Membrane),
+        ("crowns", Rank::Exact, Seams::Crowns),
     ];
     // A plain weave's seams are alike: the matrix of their profiles has no inverse.
     for (weave, pattern) in [
@@ -196,9 +197,10 @@ pub(super) fn ranks(renderer: &Renderer, job: &Job) -> Result<String, Fault> {
         ),
     ] {
         let design = cotton(pattern, usual(), None)?;
-        for (name, rank) in all {
+        for (name, rank, seams) in all {
             let mut request = small(3.0);
-            request.settings.cloth.synthesis.rank = rank;
+            let synthesis = &mut request.settings.cloth.synthesis;
+            (synthesis.rank, synthesis.seams) = (rank, seams);
             let name = format!("{weave}, {name}");
             let still = drawn(&name, (renderer, job), &design, &request)?;
             covers(&name, &still, 0.8..=1.0)?;

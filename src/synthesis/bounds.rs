@@ -40,7 +40,10 @@ impl Bounds {
             let pairs: Vec<_> = blocks
                 .par_iter()
                 .map(|&block| {
-                    let own = Side::ALL.map(|side| fix.edge_field(block, face, side, side));
+                    let own = Side::ALL.map(|side| {
+                        (fix.may_shift(block.block, side, face))
+                            .then(|| fix.edge_field(block, face, side, side))
+                    });
                     let key = catalogue.key(block.block);
                     (
                         over_columns(fix, &own, &received, Some(key)),
@@ -80,6 +83,7 @@ fn received(fix: &EdgeFix, catalogue: &Catalogue, blocks: &[BlockRef], face: Fac
             blocks
                 .par_iter()
                 .filter(|block| (catalogue.key(block.block) & 1 == 1) == warp_up)
+                .filter(|block| fix.may_shift(block.block, side.opposite(), face))
                 .fold(widest, |mut extremes, &block| {
                     let field = fix.edge_field(block, face, side.opposite(), side);
                     for ([low, high], value) in extremes.iter_mut().zip(field) {
@@ -102,7 +106,7 @@ fn received(fix: &EdgeFix, catalogue: &Catalogue, blocks: &[BlockRef], face: Fac
 /// Bounds of one block over each column of stacks; `key` fixes the neighbours' bits.
 fn over_columns(
     fix: &EdgeFix,
-    own: &[Vec<f32>; 4],
+    own: &[Option<Vec<f32>>; 4],
     received: &Received,
     key: Option<u8>,
 ) -> Vec<[f32; 2]> {
@@ -119,7 +123,10 @@ fn over_columns(
                     Some(_) => &[1],
                     None => &[0, 1],
                 };
-                let own = own[side.index()][stack];
+                let Some(own) = &own[side.index()] else {
+                    continue;
+                };
+                let own = own[stack];
                 // Without a seam, or without a neighbour, the edge adds nothing.
                 let (mut low, mut high) = (0.0f32, 0.0f32);
                 for &bit in bits {

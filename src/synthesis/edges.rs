@@ -13,6 +13,13 @@
 //! The basis holds the leading eigenvectors of the Gram matrix of all seams of a fixed
 //! corpus, so a truncation to r has the least squared error of all rank-r bases. Fields
 //! of opposite edges are mirror images and stored once.
+//!
+//! Beside the paper's way there is [`Closing::Crowns`], which keeps fibres straight where they
+//! are seen: a membrane closes the step and leaves a kink of several degrees, wider than the
+//! highlight of silk. There only edges count that the yarn on that face crosses and goes on
+//! beyond, as a float does; the crown of the yarn has the same height *and slope* on either
+//! side ([`Crown`](super::Crown)), by a cubic along the yarn that leaves its other end alone
+//! and fades towards its flanks.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -37,6 +44,27 @@ pub enum Rank {
     Truncated(u32),
     /// Every profile exactly.
     Exact,
+}
+
+/// How seams are closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Closing {
+    /// They are not.
+    Off,
+    /// A membrane closes steps between the heights of edges.
+    Membrane(Rank),
+    /// Height and slope of a yarn's crown are the same on both sides, where it is seen to
+    /// cross the edge.
+    Crowns,
+}
+
+impl From<Rank> for Closing {
+    fn from(rank: Rank) -> Self {
+        match rank {
+            Rank::Off | Rank::Truncated(0) => Self::Off,
+            _ => Self::Membrane(rank),
+        }
+    }
 }
 
 /// Which neighbours a bound of the shift allows for.
@@ -69,6 +97,8 @@ pub struct EdgeFix {
     coefficients: Vec<f32>,
     /// Block beside each block in its exemplar, by side.
     neighbours: Vec<[u16; 4]>,
+    /// `[face][block]`: at which sides there may be a seam.
+    seams: Vec<[bool; 4]>,
     bounds: Bounds,
 }
 
@@ -81,6 +111,8 @@ struct Basis {
     profiles: Vec<f32>,
     /// `[y][x][t]`, padded with zeros.
     fields: Vec<f32>,
+    /// The same for the opposite edge; empty where they are the mirror image.
+    opposite: Vec<f32>,
 }
 
 /// Half-differences of edge coefficients at the four edges of a block.
@@ -102,10 +134,10 @@ impl EdgeFix {
     pub fn new(
         heights: &[EdgeHeights],
         catalogue: &Catalogue,
-        rank: Rank,
+        closing: impl Into<Closing>,
         job: &Job,
     ) -> Result<Self, SynthesisError> {
-        Self::with_basis_of(heights, heights, catalogue, rank, job)
+        Self::with_basis_of(heights, heights, catalogue, closing, job)
     }
 
     /// The same with a basis made for other heights, such as those that recipes predict:
@@ -117,9 +149,10 @@ impl EdgeFix {
         predicted: &[EdgeHeights],
         heights: &[EdgeHeights],
         catalogue: &Catalogue,
-        rank: Rank,
+        closing: impl Into<Closing>,
         job: &Job,
     ) -> Result<Self, SynthesisError> {
+        let closing = closing.into();
         let (bx, by) = heights.first().map_or((1, 1), |first| (first.bx, first.by));
         for (set, heights) in predicted.iter().chain(heights).enumerate() {
             heights.check(set, catalogue)?;
@@ -143,13 +176,21 @@ impl EdgeFix {
             horizontal: Basis::default(),
             coefficients: Vec::new(),
             neighbours,
+            seams: seams(catalogue, closing),
             bounds: Bounds::default(),
         };
-        let wanted = match rank {
-            Rank::Off | Rank::Truncated(0) => return Ok(fix),
+        let wanted = match closing {
             _ if heights.is_empty() => return Ok(fix),
-            Rank::Truncated(rank) => rank as usize,
-            Rank::Exact => usize::MAX,
+            Closing::Off | Closing::Membrane(Rank::Off) => return Ok(fix),
+            Closing::Crowns => {
+                fix.vertical = Basis::crowns(bx, by, |x, y| y * bx + x);
+                fix.horizontal = Basis::crowns(by, bx, |y, x| y * bx + x);
+                fix.take_crowns(heights);
+                fix.bounds = Bounds::new(&fix, catalogue);
+                return Ok(fix);
+            }
+            Closing::Membrane(Rank::Truncated(rank)) => rank as usize,
+            Closing::Membrane(Rank::Exact) => usize::MAX,
         };
         let [across, along] = meetings(catalogue, job)?;
         job.report("edge fixing", 0.1);
@@ -187,8 +228,13 @@ impl EdgeFix {
             + self.vertical.profiles.len()
             + self.vertical.fields.len()
             + self.horizontal.profiles.len()
-            + self.horizontal.fields.len();
-        floats * size_of::<f32>() + self.bounds.bytes() + self.neighbours.len() * 8
+            + self.horizontal.fields.len()
+            + self.vertical.opposite.len()
+            + self.horizontal.opposite.len();
+        floats * size_of::<f32>()
+            + self.bounds.bytes()
+            + self.neighbours.len() * size_of::<[u16; 4]>()
+            + self.seams.len() * size_of::<[bool; 4]>()
     }
 
     /// True when no seam is between two blocks: they stand so in one exemplar.
@@ -196,6 +242,28 @@ impl EdgeFix {
     pub fn continues(&self, block: BlockRef, side: Side, neighbour: BlockRef) -> bool {
         block.set == neighbour.set
             && self.neighbours[usize::from(block.block)][side.index()] == neighbour.block
+    }
+
+    /// Whether anything is shifted on a face where these two meet.
+    #[inline]
+    pub fn shifts_across(
+        &self,
+        block: BlockRef,
+        side: Side,
+        neighbour: BlockRef,
+        face: Face,
+    ) -> bool {
+        let may = |block: u16, side: Side| {
+            self.seams[face as usize * self.blocks + usize::from(block)][side.index()]
+        };
+        may(block.block, side)
+            && may(neighbour.block, side.opposite())
+            && !self.continues(block, side, neighbour)
+    }
+
+    /// Whether a block may have a seam at a side on a face.
+    pub(super) fn may_shift(&self, block: u16, side: Side, face: Face) -> bool {
+        self.seams[face as usize * self.blocks + usize::from(block)][side.index()]
     }
 
     /// Coefficients of a block's four seams, to be evaluated by [`EdgeFix::shift`].
@@ -321,7 +389,7 @@ impl EdgeFix {
         let basis = self.basis(side);
         let length = self.edge_length(side);
         let mut profile = vec![0.0; length];
-        if self.is_off() || self.continues(block, side, neighbour) {
+        if self.is_off() || !self.shifts_across(block, side, neighbour, face) {
             return profile;
         }
         let own = self.edge(block, face, side);
@@ -335,11 +403,51 @@ impl EdgeFix {
         profile
     }
 
+    /// How much the shift at the edge of `block` towards `neighbour` rises along +x or +y,
+    /// across the edge, in the middle of the edge: voxels a stack. What the block's other
+    /// edges add is left out.
+    pub fn seam_slope(&self, block: BlockRef, side: Side, neighbour: BlockRef, face: Face) -> f32 {
+        if self.is_off() || !self.shifts_across(block, side, neighbour, face) {
+            return 0.0;
+        }
+        let own = self.edge(block, face, side);
+        let other = self.edge(neighbour, face, side.opposite());
+        let (bx, by) = (self.bx, self.by);
+        let most = self.edge_length(match side {
+            Side::Left | Side::Right => Side::Below,
+            Side::Below | Side::Above => Side::Left,
+        });
+        let at = |from_edge: usize, along: usize| {
+            let from_edge = from_edge.min(most - 1);
+            let (x, y) = match side {
+                Side::Left => (from_edge, along),
+                Side::Right => (bx - 1 - from_edge, along),
+                Side::Below => (along, from_edge),
+                Side::Above => (along, by - 1 - from_edge),
+            };
+            0.5 * dot_difference(other, own, self.field(side, x, y))
+        };
+        let length = self.edge_length(side);
+        let middle = length / 5..(length - length / 5).max(length / 5 + 1);
+        let count = middle.len() as f32;
+        // The slope at the border itself: the parabola through the three stacks next to it.
+        let inwards: f32 = middle
+            .map(|along| {
+                let [a, b, c] = [0, 1, 2].map(|from_edge| at(from_edge, along));
+                2.0 * (b - a) - (c - b)
+            })
+            .sum();
+        match side {
+            Side::Left | Side::Below => inwards / count,
+            Side::Right | Side::Above => -inwards / count,
+        }
+    }
+
     /// The neighbour's coefficients when there is a seam towards it.
     #[inline]
     fn across_seam(&self, around: &Neighbourhood, face: Face, side: Side) -> Option<&[f32]> {
         let neighbour = around.sides[side.index()]?;
-        if self.continues(around.centre, side, neighbour) {
+        if !self.shifts_across(around.centre, side, neighbour, face) {
             return None;
         }
         Some(self.edge(neighbour, face, side.opposite()))
@@ -384,14 +492,15 @@ impl EdgeFix {
     /// Values of all basis fields of one edge at a stack.
     #[inline]
     fn field(&self, side: Side, x: usize, y: usize) -> &[f32] {
-        let (x, y) = match side {
-            Side::Left | Side::Below => (x, y),
-            Side::Right => (self.bx - 1 - x, y),
-            Side::Above => (x, self.by - 1 - y),
-        };
         let basis = self.basis(side);
+        let (fields, [x, y]) = match side {
+            Side::Left | Side::Below => (&basis.fields, [x, y]),
+            _ if !basis.opposite.is_empty() => (&basis.opposite, [x, y]),
+            Side::Right => (&basis.fields, [self.bx - 1 - x, y]),
+            Side::Above => (&basis.fields, [x, self.by - 1 - y]),
+        };
         let from = (y * self.bx + x) * basis.padded;
-        &basis.fields[from..from + basis.padded]
+        &fields[from..from + basis.padded]
     }
 
     /// Every block of every set, in the order of the tables.
@@ -409,6 +518,23 @@ impl EdgeFix {
         stacks
             .map(|(x, y)| dot(coefficients, self.field(at, x, y)))
             .collect()
+    }
+
+    /// The crowns of all edges are their coefficients.
+    fn take_crowns(&mut self, heights: &[EdgeHeights]) {
+        for face in Face::ALL {
+            let mean = mean_crown(heights, face);
+            for heights in heights {
+                for block in 0..self.blocks as u16 {
+                    for side in Side::ALL {
+                        let crown = heights.crown(face, block, side);
+                        let own = [crown.height - mean, crown.slope];
+                        let padding = [0.0; LANES - 2];
+                        self.coefficients.extend(own.into_iter().chain(padding));
+                    }
+                }
+            }
+        }
     }
 
     /// Projects the heights of all edges on the bases.
@@ -432,7 +558,59 @@ impl EdgeFix {
     }
 }
 
+/// At which sides of each block there may be a seam on a face: of crowns, where a float runs
+/// on.
+fn seams(catalogue: &Catalogue, closing: Closing) -> Vec<[bool; 4]> {
+    let blocks = 0..catalogue.blocks() as u16;
+    let every = Face::ALL
+        .into_iter()
+        .flat_map(|face| blocks.clone().map(move |block| (face, block)));
+    let may = |(face, block)| {
+        Side::ALL.map(|side| closing != Closing::Crowns || catalogue.runs_on(block, side, face))
+    };
+    every.map(may).collect()
+}
+
+/// Where across a yarn its crown is shifted whole, as a share of its pitch from the middle;
+/// from there to the border of the block, it fades.
+const CROWN: f32 = 0.3;
+
 impl Basis {
+    /// Fields of the crown's height and slope at two opposite edges, `away` stacks apart and
+    /// `across` stacks long; `stack(a, c)` is the number of the stack that lies so far from the
+    /// first and so far along it.
+    fn crowns(away: usize, across: usize, stack: impl Fn(usize, usize) -> usize) -> Self {
+        let weight: Vec<f32> = (0..across)
+            .map(|at| {
+                let aside = ((at as f32 + 0.5) / across as f32 - 0.5).abs();
+                let rest = ((0.5 - aside) / (0.5 - CROWN)).clamp(0.0, 1.0);
+                rest * rest * (3.0 - 2.0 * rest)
+            })
+            .collect();
+        let mut basis = Self {
+            rank: 2,
+            padded: LANES,
+            profiles: [&weight[..], &vec![0.0; across]].concat(),
+            fields: vec![0.0; away * across * LANES],
+            opposite: vec![0.0; away * across * LANES],
+        };
+        let length = away as f32;
+        for a in 0..away {
+            // Cubic Hermite: 1 and slope 0 at the edge, or 0 and slope 1; nothing at the other.
+            let t = (a as f32 + 0.5) / length;
+            let height = |t: f32| (1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t);
+            let slope = |t: f32| length * t * (1.0 - t) * (1.0 - t);
+            for (c, &weight) in weight.iter().enumerate() {
+                let from = stack(a, c) * LANES;
+                basis.fields[from] = weight * height(t);
+                basis.fields[from + 1] = weight * slope(t);
+                basis.opposite[from] = weight * height(1.0 - t);
+                basis.opposite[from + 1] = -weight * slope(1.0 - t);
+            }
+        }
+        basis
+    }
+
     fn vertical(gram: DMatrix<f64>, rank: usize, bx: usize, by: usize) -> Self {
         let solver = EdgeSolver::new(bx, by);
         Self::new(gram, rank, bx * by, |profile| solver.solve(profile))
@@ -463,6 +641,7 @@ impl Basis {
             padded,
             profiles: Vec::with_capacity(rank * length),
             fields: vec![0.0; stacks * padded],
+            opposite: Vec::new(),
         };
         for (t, profile) in eigenvectors(gram).into_iter().take(rank).enumerate() {
             for (stack, value) in solve(&profile).into_iter().enumerate() {
@@ -527,6 +706,22 @@ fn mean_height(heights: &[EdgeHeights], face: Face) -> f64 {
         }
     }
     if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// Mean height of all crowns of a face.
+fn mean_crown(heights: &[EdgeHeights], face: Face) -> f32 {
+    let crowns = heights.iter().flat_map(|heights| {
+        let half = heights.crowns.len() / 2;
+        &heights.crowns[face as usize * half..][..half]
+    });
+    let (sum, count) = crowns.fold((0.0, 0.0), |(sum, count), crown| {
+        (sum + f64::from(crown.height), count + 1.0)
+    });
+    if count > 0.0 {
+        (sum / count) as f32
+    } else {
+        0.0
+    }
 }
 
 /// Σ d dᵀ over all seams of the corpus, every pair of sets and both faces, where d is the

@@ -17,6 +17,18 @@ impl Face {
     pub const ALL: [Self; 2] = [Self::Front, Self::Back];
 }
 
+impl Catalogue {
+    /// Whether the yarn that is seen on a face of a block crosses a side of it and is seen
+    /// beyond, in the block's own exemplar: a float runs on there.
+    pub fn runs_on(&self, block: u16, side: Side, face: Face) -> bool {
+        let key = self.key(block);
+        let warp_up = key & 1 == 1;
+        let along_warp = matches!(side, Side::Below | Side::Above);
+        let warp_seen = warp_up == (face == Face::Front);
+        along_warp == warp_seen && (key >> side as u8 & 1 == 1) == warp_up
+    }
+}
+
 /// Height profiles along the four edges of every block of one exemplar set, in voxels.
 ///
 /// Each table is \[face\]\[block\]\[position\], faces in the order of [`Face::ALL`], positions
@@ -39,6 +51,18 @@ pub struct EdgeHeights {
     pub bottom: Vec<f32>,
     /// At the edge towards pick + 1, `bx` values a block.
     pub top: Vec<f32>,
+    /// \[face\]\[block\]\[side\]: the crown of the yarn that is seen and crosses the edge.
+    /// Those of edges that it does not cross say nothing.
+    pub crowns: Vec<Crown>,
+}
+
+/// The middle of a yarn's surface where it crosses an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Crown {
+    /// Height at the border, voxels.
+    pub height: f32,
+    /// How much it rises along +x or +y, voxels a stack.
+    pub slope: f32,
 }
 
 impl EdgeHeights {
@@ -52,7 +76,23 @@ impl EdgeHeights {
             right: vec![0.0; 2 * blocks * by],
             bottom: vec![0.0; 2 * blocks * bx],
             top: vec![0.0; 2 * blocks * bx],
+            crowns: vec![Crown::default(); 2 * blocks * Side::ALL.len()],
         }
+    }
+
+    /// The crown at a block's edge on a face.
+    pub fn crown(&self, face: Face, block: u16, side: Side) -> Crown {
+        self.crowns[self.crown_at(face, block, side)]
+    }
+
+    /// The same, to be written.
+    pub fn crown_mut(&mut self, face: Face, block: u16, side: Side) -> &mut Crown {
+        let at = self.crown_at(face, block, side);
+        &mut self.crowns[at]
+    }
+
+    fn crown_at(&self, face: Face, block: u16, side: Side) -> usize {
+        (face as usize * self.blocks + usize::from(block)) * Side::ALL.len() + side.index()
     }
 
     /// The profile of a block's edge on a face.
@@ -116,6 +156,18 @@ impl EdgeHeights {
                     table[at]
                 ));
             }
+        }
+        let wanted = 2 * self.blocks * Side::ALL.len();
+        if self.crowns.len() != wanted {
+            return fail(format!("{} crowns instead of {wanted}", self.crowns.len()));
+        }
+        let wild = |crown: &Crown| !(crown.height.is_finite() && crown.slope.is_finite());
+        if let Some(at) = self.crowns.iter().position(wild) {
+            let block = at / Side::ALL.len() % self.blocks;
+            return fail(format!(
+                "the crown at block {block} is {:?}",
+                self.crowns[at]
+            ));
         }
         Ok(())
     }

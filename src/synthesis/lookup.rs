@@ -98,7 +98,8 @@ impl Placement<'_> {
     /// before and after edge fixing, both faces together, in voxels.
     ///
     /// A seam is an edge between blocks that do not continue each other. Corners, where
-    /// four blocks meet, are left out.
+    /// four blocks meet, are left out. `rise` is how much a voxel is higher than it is long
+    /// along x and along y.
     ///
     /// # Errors
     /// When the job is cancelled.
@@ -107,6 +108,7 @@ impl Placement<'_> {
         edge_fix: &EdgeFix,
         heights: &[EdgeHeights],
         set_at: impl Fn(i64, i64) -> u16 + Sync,
+        rise: [f32; 2],
         job: &Job,
     ) -> Result<SeamRms, SynthesisError> {
         let seams = self.count_seams(edge_fix, &set_at, job)?;
@@ -131,7 +133,22 @@ impl Placement<'_> {
         };
         let [(front_before, front_after), (back_before, back_after)] = [total(&[0]), total(&[1])];
         let (before, after) = total(&[0, 1]);
+        let mut kinks = Jumps::default();
+        for &(first, second, side, count) in &seams {
+            let mut own = Jumps::default();
+            own.add_kinks(
+                edge_fix,
+                self.catalogue,
+                heights,
+                (first, second),
+                side,
+                rise,
+            );
+            kinks = kinks.plus(own.times(count));
+        }
+        let (kinks_before, kinks_after) = kinks.rms();
         Ok(SeamRms {
+            kinks: [kinks_before, kinks_after].map(|kink| kink.atan().to_degrees()),
             before,
             after,
             front: [front_before, front_after],
@@ -268,6 +285,10 @@ pub struct SeamRms {
     pub front: [f64; 2],
     /// Before and after on the back.
     pub back: [f64; 2],
+    /// By how much the yarns that are seen to run across seams bend there, before and after
+    /// edge fixing: root mean square, degrees.
+    #[serde(default)]
+    pub kinks: [f64; 2],
     /// Number of seams.
     pub seams: u64,
 }
@@ -299,6 +320,37 @@ impl Jumps {
             let left = jump - 2.0 * f64::from(shift[at]);
             self.before += jump * jump;
             self.after += left * left;
+            self.stacks += 1.0;
+        }
+    }
+
+    /// Bends of the crowns that run across a seam, on both faces.
+    fn add_kinks(
+        &mut self,
+        edge_fix: &EdgeFix,
+        catalogue: &Catalogue,
+        heights: &[EdgeHeights],
+        (first, second): (BlockRef, BlockRef),
+        side: Side,
+        rise: [f32; 2],
+    ) {
+        let rise = rise[usize::from(matches!(side, Side::Below | Side::Above))];
+        for face in Face::ALL {
+            let runs_on = catalogue.runs_on(first.block, side, face)
+                && catalogue.runs_on(second.block, side.opposite(), face);
+            if !runs_on {
+                continue;
+            }
+            let slope = |block: BlockRef, side: Side| {
+                let crown = heights[usize::from(block.set)].crown(face, block.block, side);
+                crown.slope * rise
+            };
+            let before = slope(second, side.opposite()) - slope(first, side);
+            let bent = edge_fix.seam_slope(second, side.opposite(), first, face)
+                - edge_fix.seam_slope(first, side, second, face);
+            let after = before + bent * rise;
+            self.before += f64::from(before).powi(2);
+            self.after += f64::from(after).powi(2);
             self.stacks += 1.0;
         }
     }

@@ -37,23 +37,53 @@ mod weaves;
 
 pub use assign::{Assignment, Method, assign, assign_part};
 pub use catalogue::{Catalogue, KEYS, Place, Side, key_of};
-pub use edges::{BOUND_COLUMN, EdgeFix, NeighbourBits, Rank, SeamCoefficients};
-pub use heights::{EdgeHeights, Face};
+pub use edges::{BOUND_COLUMN, Closing, EdgeFix, NeighbourBits, Rank, SeamCoefficients};
+pub use heights::{Crown, EdgeHeights, Face};
 pub use lookup::{BlockRef, Neighbourhood, Placement, SeamRms};
 pub use part::{MOST_AT_ONCE, Stretch};
 pub use quality::{Continuity, Quality};
 pub use shift::Randomisation;
 
 use serde::{Deserialize, Serialize};
+use strum::{Display, EnumMessage, EnumString, IntoStaticStr, VariantArray};
 
 use crate::job::Cancelled;
+
+/// What is brought together where blocks meet, from crude to reference.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Serialize,
+    Deserialize,
+    Display,
+    EnumString,
+    EnumMessage,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Seams {
+    /// The heights of all edges, by a membrane over the block: Zhao 2012 §5.5.
+    #[default]
+    Membrane,
+    /// Height and slope of the yarns that are seen to run on.
+    Crowns,
+}
 
 /// Every approximation of the synthesis, each with its crude and its reference end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SynthesisSettings {
     /// How blocks are chosen. Crude: [`Method::Naive`]; reference: [`Method::Dp`].
     pub method: Method,
-    /// How finely seams are closed. Crude: [`Rank::Off`]; reference: [`Rank::Exact`].
+    /// What is brought together at seams. Crude: [`Seams::Membrane`], which leaves kinks;
+    /// reference: [`Seams::Crowns`].
+    pub seams: Seams,
+    /// How finely a membrane closes seams, or [`Rank::Off`] for leaving all of them open.
+    /// Crude: [`Rank::Off`]; reference: [`Rank::Exact`].
     pub rank: Rank,
     /// Seed of every random choice; not an approximation, any value is as good.
     pub seed: u64,
@@ -67,9 +97,21 @@ impl Default for SynthesisSettings {
     fn default() -> Self {
         Self {
             method: Method::Dp,
+            seams: Seams::default(),
             rank: Rank::Truncated(15),
             seed: 0,
             patch: 3,
+        }
+    }
+}
+
+impl SynthesisSettings {
+    /// How seams are closed.
+    pub fn closing(&self) -> Closing {
+        match (self.seams, self.rank) {
+            (_, Rank::Off | Rank::Truncated(0)) => Closing::Off,
+            (Seams::Crowns, _) => Closing::Crowns,
+            (Seams::Membrane, rank) => Closing::Membrane(rank),
         }
     }
 }

@@ -56,9 +56,9 @@ fn woven(design: &Design, level: u32) -> ClothVolume {
         .collect();
     let heights: Vec<_> = sets.iter().map(|set| set.heights.clone()).collect();
     let predicted: Vec<_> = sets.iter().map(|set| set.predicted.clone()).collect();
-    let rank = settings.synthesis.rank;
+    let closing = settings.synthesis.closing();
     let fix = timed("edge fixing", || {
-        EdgeFix::with_basis_of(&predicted, &heights, &catalogue, rank, &job).expect("heights")
+        EdgeFix::with_basis_of(&predicted, &heights, &catalogue, closing, &job).expect("heights")
     });
     println!("{:<44} {:9.1} MB", "  tables", fix.bytes() as f64 / 1e6);
     let majorants = timed("majorants", || {

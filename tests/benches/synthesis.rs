@@ -156,7 +156,7 @@ fn seams(pattern: &WeavePattern, assignment: &Assignment) {
         };
         let (measuring, rms) = best_of(3, || {
             placement
-                .seam_rms(&fix, &heights, |_, _| 0, &job)
+                .seam_rms(&fix, &heights, |_, _| 0, [1.0; 2], &job)
                 .expect("measured")
         });
         println!(
@@ -171,7 +171,7 @@ fn seams(pattern: &WeavePattern, assignment: &Assignment) {
         }
         let quality = (processor_seconds() - cpu) / 3.0;
         for _ in 0..3 {
-            let rms = placement.seam_rms(&fix, &heights, |_, _| 0, &job);
+            let rms = placement.seam_rms(&fix, &heights, |_, _| 0, [1.0; 2], &job);
             black_box(rms.expect("measured"));
         }
         let rms = (processor_seconds() - cpu) / 3.0 - quality;

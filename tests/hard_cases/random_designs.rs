@@ -15,7 +15,7 @@ use pickglass::plan::{Effect, EffectChoice, Settings};
 use pickglass::random::Random;
 use pickglass::render::Backing;
 use pickglass::scene::{PRESET_NAMES, View};
-use pickglass::synthesis::{Method, Rank};
+use pickglass::synthesis::{Method, Rank, Seams};
 
 struct Dice(Random);
 
@@ -104,6 +104,7 @@ fn request(dice: &mut Dice) -> StillRequest {
         Rank::Truncated(15),
         Rank::Exact,
     ]);
+    settings.cloth.synthesis.seams = dice.one(&[Seams::Membrane, Seams::Crowns]);
     settings.cloth.synthesis.method = dice.one(&[Method::Naive, Method::Greedy, Method::Dp]);
     settings.cloth.synthesis.patch = dice.one(&[0, 1, 3, 64]);
     settings.render.max_order = dice.one(&[1, 8, 256]);

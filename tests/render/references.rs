@@ -24,6 +24,11 @@ const LIST: &[(&str, &str, &[&str])] = &[
         ],
     ),
     (
+        "seams",
+        "directions of the voxels that are seen, on either side of borders",
+        &["tests/cloth/seams.rs::fibres_of_a_satin_run_on_without_a_kink"],
+    ),
+    (
         "patch",
         "cloth without a period",
         &["tests/synthesis/assign.rs::a_patch_moves_together_and_the_cloth_has_no_period"],

@@ -20,7 +20,7 @@ use pickglass::formats::image::{Black, Convention, Corner, ImageAs, ImageContent
 use pickglass::formats::{self, Format};
 use pickglass::plan::{Budget, EffectChoice};
 use pickglass::posterise::Fit;
-use pickglass::synthesis::Method;
+use pickglass::synthesis::{Method, Seams};
 use pickglass::text::shell_word;
 
 /// Look closely at cloth that has not been woven yet.
@@ -325,7 +325,10 @@ pub struct SynthesizeArgs {
     /// How blocks are assigned to crossings
     #[arg(long, default_value_t = Method::Dp, value_parser = values::named::<Method>())]
     pub method: Method,
-    /// Rank of the edge fixing; 0 leaves the edges alone
+    /// What is brought together at seams
+    #[arg(long, default_value_t = Seams::default(), value_parser = values::named::<Seams>())]
+    pub seams: Seams,
+    /// How finely a membrane closes seams; 0 leaves all of them open
     #[arg(long, value_name = "R", default_value_t = 15)]
     pub rank: u32,
     /// Seed of the patch shifts
@@ -395,7 +398,7 @@ pub struct PictureArgs {
     /// Seed of the patch shifts and of the paths
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
-    /// Set one dial of one approximation, e.g. rank=15; may be repeated
+    /// Set one dial of one approximation, e.g. order=8; may be repeated
     #[arg(long = "set", value_name = "dial=value", value_parser = values::dial)]
     pub dials: Vec<Turned>,
 }

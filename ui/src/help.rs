@@ -43,7 +43,7 @@ pub const SYNTHESIZE: &str = "\
 Says how well the blocks meet; makes no picture.
 
 With --json: crossings, seconds{…, total}, bytes, consistency{sum, max}, continuity{before,
-after, max}, seam_rms{before, after}.";
+after, max}, seam_rms{before, after}, kinks_degrees{before, after}.";
 
 /// What `effects` says.
 pub const EFFECTS: &str = "\

@@ -258,7 +258,7 @@ pub fn hard_case() -> PossibleValuesParser {
 /// `dial=value`.
 pub fn dial(text: &str) -> Result<Turned, String> {
     let Some((name, value)) = text.split_once('=') else {
-        return Err("expected dial=value, as rank=15".to_owned());
+        return Err("expected dial=value, as order=8".to_owned());
     };
     let (name, value) = (name.trim(), value.trim().to_owned());
     let dial = plan::dial(name).map_err(|error| error.to_string())?;

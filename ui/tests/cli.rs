@@ -664,12 +664,22 @@ fn options_that_others_leave_nothing_to_say_are_refused_by_name() {
             &[&line[..], &["--set", "level=4"], more].concat(),
         )
     };
-    let idle: [(&str, &[&str], &str); 9] = [
+    let idle: [(&str, &[&str], &str); 11] = [
         ("a.png", &["--set", "level=3"], "--set level"),
         (
             "a.png",
             &["--set", "rank=3", "--effects", "-edge-fixing"],
             "--set rank",
+        ),
+        (
+            "a.png",
+            &["--set", "rank=3", "--set", "seams=crowns"],
+            "--set rank",
+        ),
+        (
+            "a.png",
+            &["--set", "rank=0", "--set", "seams=crowns"],
+            "--set seams",
         ),
         (
             "a.png",
@@ -717,6 +727,7 @@ fn options_that_others_leave_nothing_to_say_are_refused_by_name() {
     // Each of them has something to say elsewhere.
     for (file, more) in [
         ("a.png", &["--set", "rank=3"][..]),
+        ("a.png", &["--set", "seams=crowns"]),
         ("a.png", &["--set", "backing-layers=3", "--backing", "self"]),
         ("a.png", &["--set", "png-bits=16", "--exposure", "1"]),
         ("a.exr", &["--set", "denoise=off"]),

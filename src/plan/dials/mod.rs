@@ -13,6 +13,7 @@ use super::settings::Settings;
 pub static DIALS: &[&Dial] = &[
     &synthesis::METHOD,
     &synthesis::RANK,
+    &synthesis::SEAMS,
     &synthesis::PATCH,
     &cloth::LEVEL,
     &cloth::LEVEL_CORRECTION,

@@ -2,7 +2,7 @@
 
 use crate::plan::dial::{Dial, Invalidates, Measure, always, number};
 use crate::plan::effect::Effect;
-use crate::synthesis::Rank;
+use crate::synthesis::{Closing, Rank};
 
 pub(super) static METHOD: Dial = Dial {
     name: "method",
@@ -23,10 +23,32 @@ pub(super) static METHOD: Dial = Dial {
     },
 };
 
+pub(super) static SEAMS: Dial = Dial {
+    name: "seams",
+    title: "What meets at seams",
+    about: "whether yarns that are seen run on without a kink from block to block",
+    values: "membrane or crowns",
+    ladder: &["membrane", "crowns"],
+    invalidates: Invalidates::Seams,
+    measure: Measure::Kinks,
+    effect: Some(Effect::EdgeFixing),
+    of_voxels: false,
+    elsewhere: None,
+    idle: |settings, _| {
+        let why = "rank 0 leaves all seams open: leave one of the two out";
+        (settings.cloth.synthesis.closing() == Closing::Off).then_some(why)
+    },
+    get: |settings| settings.cloth.synthesis.seams.to_string(),
+    set: |settings, text| {
+        settings.cloth.synthesis.seams = text.parse().ok()?;
+        Some(())
+    },
+};
+
 pub(super) static RANK: Dial = Dial {
     name: "rank",
     title: "Closing of seams",
-    about: "how finely seams between blocks are closed",
+    about: "how finely a membrane closes seams between blocks",
     values: "0 to 1000, or exact",
     ladder: &["0", "5", "15", "40", "exact"],
     invalidates: Invalidates::Seams,
@@ -34,7 +56,10 @@ pub(super) static RANK: Dial = Dial {
     effect: Some(Effect::EdgeFixing),
     of_voxels: false,
     elsewhere: None,
-    idle: always,
+    idle: |settings, _| {
+        let why = "crowns have no membrane: leave one of the two out";
+        (settings.cloth.synthesis.closing() == Closing::Crowns).then_some(why)
+    },
     get: |settings| match settings.cloth.synthesis.rank {
         Rank::Off => "0".to_owned(),
         Rank::Truncated(rank) => rank.to_string(),

@@ -33,6 +33,7 @@ pub fn run(args: &SynthesizeArgs) -> anyhow::Result<()> {
 fn settings(args: &SynthesizeArgs) -> SynthesisSettings {
     SynthesisSettings {
         method: args.method,
+        seams: args.seams,
         rank: match args.rank {
             0 => Rank::Off,
             rank => Rank::Truncated(rank),
@@ -106,6 +107,10 @@ impl Report {
                 "before": self.seams.before * self.voxel_mm,
                 "after": self.seams.after * self.voxel_mm,
             },
+            "kinks_degrees": {
+                "before": self.seams.kinks[0],
+                "after": self.seams.kinks[1],
+            },
         })
     }
 
@@ -137,6 +142,10 @@ impl Report {
                 "  seams {:.2} µm, {:.2} µm after edge fixing",
                 self.seams.before * self.voxel_mm * 1e3,
                 self.seams.after * self.voxel_mm * 1e3,
+            ),
+            format!(
+                "  kinks of floats {:.1}°, {:.1}° after edge fixing",
+                self.seams.kinks[0], self.seams.kinks[1],
             ),
         ]
     }
