@@ -55,7 +55,7 @@
 //! | folder | what it is | imports |
 //! |---|---|---|
 //! | [`hash`] | a stable hash of what is said | – |
-//! | [`random`] | random numbers that are a hash of where they are used | – |
+//! | [`random`] | random numbers that are a hash of where they are used | `hash` |
 //! | [`job`] | progress, cancelling, deadlines | – |
 //! | [`clock`] | what passed, and what processors worked | – |
 //! | [`limits`] | sizes beyond which nothing is tried | – |

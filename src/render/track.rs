@@ -13,7 +13,7 @@ use glam::Vec3;
 use super::counters::Counters;
 use super::medium::{Arrival, MajorantWalk, Medium, Voxel};
 use super::sggx::Fibre;
-use crate::random::{Random, Step, free_path};
+use crate::random::{Random, free_path};
 use crate::scene::{Bounds, Ray};
 
 /// Tentative collisions after which a walk is given up and counted. A walk through a
@@ -123,11 +123,8 @@ impl<M: Medium> Scatterer for M {
                     break;
                 }
                 t = next;
-                let Step {
-                    tap,
-                    accept,
-                    flight,
-                } = random.step();
+                let tap = random.tap();
+                let [accept, flight] = random.pair();
                 // Projected areas are at most 1: less than this cannot be accepted.
                 let voxel = walk.voxel(t, tap, accept * stretch.majorant);
                 steps += 1;
@@ -187,12 +184,8 @@ impl<M: Medium> Scatterer for M {
                     break;
                 }
                 t = next;
-                let Step {
-                    tap,
-                    accept: survive,
-                    flight,
-                } = random.step();
-                let voxel = walk.voxel(t, tap, 0.0);
+                let voxel = walk.voxel(t, random.tap(), 0.0);
+                let [survive, flight] = random.pair();
                 steps += 1;
                 if voxel.sigma > 0.0 {
                     let share = voxel.sigma * mean_free_path;

@@ -97,7 +97,7 @@ fn violations(cloth: &ClothVolume, rays: u64, scale: f32) -> (u64, u64) {
                 last = stretch.end;
                 for _ in 0..3 {
                     let t = stretch.start + (stretch.end - stretch.start) * random.uniform();
-                    let voxel = walk.voxel(t, random.step().tap, 0.0);
+                    let voxel = walk.voxel(t, random.tap(), 0.0);
                     lookups += 1;
                     above += u64::from(voxel.sigma > stretch.majorant * scale * (1.0 + 1e-5));
                 }

@@ -332,13 +332,10 @@ fn walks_cover_all_matter_from_any_side() {
     }
     for k in 0..200 {
         let mut random = Random::new(9, 9, k);
-        let direction = (random.step().tap - 0.5).normalize_or(Vec3::Z);
+        let direction = (random.tap() - 0.5).normalize_or(Vec3::Z);
         expect_covered(
             &grid,
-            &ray(
-                centre - direction * 2.0 + random.step().tap * 0.3,
-                direction,
-            ),
+            &ray(centre - direction * 2.0 + random.tap() * 0.3, direction),
         );
     }
 }
@@ -607,9 +604,7 @@ fn trilinear_taps_are_trilinear_in_the_mean() {
         if !(0.5..7.5).contains(&t) {
             continue;
         }
-        let (mean, error) = measure(20_000, |r| {
-            f64::from(walk.voxel(t, r.step().tap, 0.0).sigma)
-        });
+        let (mean, error) = measure(20_000, |r| f64::from(walk.voxel(t, r.tap(), 0.0).sigma));
         let exact = f64::from(t - 0.5 + 10.0 * 2.8 + 100.0 * 4.3 + 1.0);
         assert!((mean - exact).abs() < 5.0 * error, "{mean} {exact}");
         assert!(stretch.majorant >= walk.voxel(t, Vec3::splat(0.999), 0.0).sigma);
